@@ -1,0 +1,3 @@
+//! The program `fit-cloth`.
+
+fn main() {}

@@ -1,0 +1,4 @@
+//! From measured fabric to stress-strain curves.
+
+pub mod error;
+pub mod frame;

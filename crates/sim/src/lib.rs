@@ -1,0 +1,4 @@
+//! Cloth mechanics.
+
+pub mod error;
+pub mod mesh;

@@ -1,0 +1,343 @@
+//! Triangle meshes: vertices at rest, their material coordinates, triangles, and the edges between them.
+//!
+//! A mesh says where the cloth is and how it is connected; what that costs in energy is for
+//! [`membrane`](crate::membrane) and [`bending`](crate::bending).
+
+use crate::error::{Error, Result};
+use nalgebra::{Vector2, Vector3};
+use std::collections::{BTreeMap, HashMap};
+
+/// How the cells of a grid are split into triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Diagonals {
+    /// Every cell by '/': from its low corner to its high one.
+    Forward,
+    /// Every cell by '\'.
+    Backward,
+    /// '/' and '\' in turn, as on a chessboard.
+    Alternating,
+}
+
+/// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Nodes along x, at least 2.
+    pub columns: usize,
+    /// Nodes along y, at least 2.
+    pub rows: usize,
+    /// Extent along x, m.
+    pub width: f64,
+    /// Extent along y, m.
+    pub height: f64,
+    /// How cells are split.
+    pub diagonals: Diagonals,
+}
+
+impl Grid {
+    /// Index of a node.
+    pub fn node(&self, column: usize, row: usize) -> usize {
+        row * self.columns + column
+    }
+
+    /// Size of a cell along x and y, m.
+    pub fn cell(&self) -> [f64; 2] {
+        [self.width / (self.columns - 1) as f64, self.height / (self.rows - 1) as f64]
+    }
+
+    /// The grid as a flat mesh in the plane z = 0; material coordinates equal x and y.
+    ///
+    /// # Errors
+    /// Fewer than two nodes a side, or a side that is not positive.
+    pub fn mesh(&self) -> Result<Mesh> {
+        let count = |value, field| match value {
+            0 | 1 => Err(Error::InvalidValue { field, value: value as f64, expected: "at least 2 nodes" }),
+            _ => Ok(()),
+        };
+        count(self.columns, "columns")?;
+        count(self.rows, "rows")?;
+        for (field, value) in [("width", self.width), ("height", self.height)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Error::InvalidValue { field, value, expected: "a positive length in metres" });
+            }
+        }
+        let [dx, dy] = self.cell();
+        let material: Vec<_> = (0..self.rows)
+            .flat_map(|row| {
+                (0..self.columns).map(move |column| Vector2::new(column as f64 * dx, row as f64 * dy))
+            })
+            .collect();
+        let positions = material.iter().map(|p| Vector3::new(p.x, p.y, 0.0)).collect();
+        let mut triangles = Vec::with_capacity(2 * (self.columns - 1) * (self.rows - 1));
+        for row in 0..self.rows - 1 {
+            for column in 0..self.columns - 1 {
+                let [low, right] = [self.node(column, row), self.node(column + 1, row)];
+                let [up, high] = [self.node(column, row + 1), self.node(column + 1, row + 1)];
+                let forward = match self.diagonals {
+                    Diagonals::Forward => true,
+                    Diagonals::Backward => false,
+                    Diagonals::Alternating => (column + row) % 2 == 0,
+                };
+                if forward {
+                    triangles.extend([[low, right, high], [low, high, up]]);
+                } else {
+                    triangles.extend([[low, right, up], [right, high, up]]);
+                }
+            }
+        }
+        let mut mesh = Mesh::new(positions, material, triangles)?;
+        mesh.grid = Some(*self);
+        Ok(mesh)
+    }
+}
+
+/// An edge with the vertices opposite it: one at the border, two inside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// End vertices, in the winding of the first triangle.
+    pub ends: [usize; 2],
+    /// The vertex opposite the edge in its first triangle.
+    pub left: usize,
+    /// The vertex opposite the edge in its second triangle, if it has one.
+    pub right: Option<usize>,
+}
+
+/// A checked triangle mesh at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Rest positions, m.
+    pub positions: Vec<Vector3<f64>>,
+    /// Material coordinates, m: x along weft, y along warp. One pair a vertex.
+    pub material: Vec<Vector2<f64>>,
+    /// Vertex indices of each triangle, all wound alike.
+    pub triangles: Vec<[usize; 3]>,
+    /// The grid that the mesh was made from, if it was.
+    pub grid: Option<Grid>,
+}
+
+impl Mesh {
+    /// Checks a mesh and takes it.
+    ///
+    /// # Errors
+    /// Non-finite, duplicate or unreferenced vertices; bad indices; triangles without area; an edge with three
+    /// triangles; mixed winding; material coordinates that mirror or disagree with the rest lengths by more than 1 %.
+    pub fn new(
+        positions: Vec<Vector3<f64>>,
+        material: Vec<Vector2<f64>>,
+        triangles: Vec<[usize; 3]>,
+    ) -> Result<Self> {
+        if material.len() != positions.len() {
+            return Err(Error::ShapeMismatch {
+                what: "material coordinates",
+                expected: positions.len(),
+                found: material.len(),
+            });
+        }
+        let mesh = Self { positions, material, triangles, grid: None };
+        mesh.check_vertices()?;
+        mesh.check_triangles()?;
+        mesh.check_lengths()?;
+        Ok(mesh)
+    }
+
+    /// Number of vertices.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// True if the mesh has no vertex.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Twice the signed area of a triangle in material coordinates, m².
+    pub fn double_area(&self, triangle: usize) -> f64 {
+        let [a, b, c] = self.triangles[triangle].map(|vertex| self.material[vertex]);
+        (b - a).perp(&(c - a))
+    }
+
+    /// All edges, ordered by their vertices.
+    ///
+    /// # Errors
+    /// An edge with three triangles, or neighbours wound in opposite senses.
+    pub fn edges(&self) -> Result<Vec<Edge>> {
+        let mut found: BTreeMap<[usize; 2], (Edge, Vec<usize>)> = BTreeMap::new();
+        for (index, &[a, b, c]) in self.triangles.iter().enumerate() {
+            for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
+                let key = [from.min(to), from.max(to)];
+                let Some((edge, triangles)) = found.get_mut(&key) else {
+                    found.insert(key, (Edge { ends: [from, to], left: opposite, right: None }, vec![index]));
+                    continue;
+                };
+                triangles.push(index);
+                if let [first, second, third] = triangles[..] {
+                    return Err(Error::ThreeTriangles { edge: key, triangles: [first, second, third] });
+                }
+                if edge.ends == [from, to] {
+                    return Err(Error::MixedWinding { edge: key, triangles: [triangles[0], index] });
+                }
+                edge.right = Some(opposite);
+            }
+        }
+        Ok(found.into_values().map(|(edge, _)| edge).collect())
+    }
+
+    /// The connected part that each vertex belongs to, named by the part's lowest vertex.
+    pub fn parts(&self) -> Vec<usize> {
+        let mut part: Vec<usize> = (0..self.len()).collect();
+        fn root(part: &mut [usize], mut vertex: usize) -> usize {
+            while part[vertex] != vertex {
+                part[vertex] = part[part[vertex]];
+                vertex = part[vertex];
+            }
+            vertex
+        }
+        for &[a, b, c] in &self.triangles {
+            for (from, to) in [(a, b), (b, c)] {
+                let [from, to] = [root(&mut part, from), root(&mut part, to)];
+                part[from.max(to)] = from.min(to);
+            }
+        }
+        (0..self.len()).map(|vertex| root(&mut part, vertex)).collect()
+    }
+
+    fn check_vertices(&self) -> Result<()> {
+        let mut seen = HashMap::with_capacity(self.len());
+        for (vertex, (position, material)) in self.positions.iter().zip(&self.material).enumerate() {
+            for (what, finite) in [
+                ("rest position", position.iter().all(|c| c.is_finite())),
+                ("material coordinate", material.iter().all(|c| c.is_finite())),
+            ] {
+                if !finite {
+                    return Err(Error::NotFinite { what, vertex });
+                }
+            }
+            // Adding zero makes -0 and 0 the same key.
+            let key = [position.x, position.y, position.z].map(|c| (c + 0.0).to_bits());
+            if let Some(first) = seen.insert(key, vertex) {
+                return Err(Error::DuplicateVertex { first, second: vertex });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_triangles(&self) -> Result<()> {
+        let mut referenced = vec![false; self.len()];
+        for (triangle, &[a, b, c]) in self.triangles.iter().enumerate() {
+            for vertex in [a, b, c] {
+                if vertex >= self.len() {
+                    return Err(Error::BadIndex { triangle, vertex, vertices: self.len() });
+                }
+                referenced[vertex] = true;
+            }
+            if a == b || b == c || c == a {
+                let vertex = if a == b { a } else { c };
+                return Err(Error::BadIndex { triangle, vertex, vertices: self.len() });
+            }
+            let [p, q, r] = [a, b, c].map(|vertex| self.positions[vertex]);
+            let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
+            // Written so that a NaN is caught too.
+            if !((q - p).cross(&(r - p)).norm() > 1e-10 * longest) {
+                return Err(Error::ZeroArea { triangle });
+            }
+        }
+        if let Some(vertex) = referenced.iter().position(|&seen| !seen) {
+            return Err(Error::UnreferencedVertex { vertex });
+        }
+        Ok(())
+    }
+
+    fn check_lengths(&self) -> Result<()> {
+        for Edge { ends: [from, to], .. } in self.edges()? {
+            let rest = (self.positions[to] - self.positions[from]).norm();
+            let material = (self.material[to] - self.material[from]).norm();
+            if (material - rest).abs() > 0.01 * rest {
+                return Err(Error::EdgeLength { edge: [from, to], rest, material });
+            }
+        }
+        match (0..self.triangles.len()).find(|&triangle| self.double_area(triangle) <= 0.0) {
+            Some(triangle) => Err(Error::MirroredMaterial { triangle }),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> (Vec<Vector3<f64>>, Vec<Vector2<f64>>, Vec<[usize; 3]>) {
+        let material = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        (
+            material.iter().map(|p: &[f64; 2]| Vector3::new(p[0], p[1], 0.0)).collect(),
+            material.into_iter().map(Vector2::from).collect(),
+            vec![[0, 1, 2], [0, 2, 3]],
+        )
+    }
+
+    #[test]
+    fn a_grid_has_its_cells_split_as_asked() {
+        let mut grid = Grid { columns: 3, rows: 4, width: 2.0, height: 3.0, diagonals: Diagonals::Forward };
+        for (diagonals, ends) in [(Diagonals::Forward, [0, 4]), (Diagonals::Backward, [1, 3])] {
+            grid.diagonals = diagonals;
+            let edges = grid.mesh().unwrap().edges().unwrap();
+            assert_eq!(edges.len(), 2 * 4 + 3 * 3 + 6);
+            assert!(edges.iter().any(|e| e.ends == ends || e.ends == [ends[1], ends[0]]));
+        }
+        grid.diagonals = Diagonals::Alternating;
+        let mesh = grid.mesh().unwrap();
+        let area: f64 = (0..mesh.triangles.len()).map(|t| mesh.double_area(t) / 2.0).sum();
+        assert!((area - 6.0).abs() < 1e-12);
+        assert!(mesh.parts().iter().all(|&part| part == 0));
+    }
+
+    #[test]
+    fn every_defect_is_named() {
+        let check =
+            |change: &dyn Fn(&mut Vec<Vector3<f64>>, &mut Vec<Vector2<f64>>, &mut Vec<[usize; 3]>)| {
+                let (mut p, mut m, mut t) = square();
+                change(&mut p, &mut m, &mut t);
+                Mesh::new(p, m, t).unwrap_err()
+            };
+        assert_eq!(
+            check(&|p, _, _| p[2].x = f64::NAN),
+            Error::NotFinite { what: "rest position", vertex: 2 }
+        );
+        assert_eq!(check(&|p, _, _| p[3] = p[0]), Error::DuplicateVertex { first: 0, second: 3 });
+        assert_eq!(check(&|_, _, t| t.truncate(1)), Error::UnreferencedVertex { vertex: 3 });
+        assert_eq!(check(&|_, _, t| t[1][2] = 4), Error::BadIndex { triangle: 1, vertex: 4, vertices: 4 });
+        assert_eq!(
+            check(&|_, _, t| t[1] = [0, 2, 2]),
+            Error::BadIndex { triangle: 1, vertex: 2, vertices: 4 }
+        );
+        assert_eq!(check(&|p, _, _| p[3] = (p[0] + p[2]) / 2.0), Error::ZeroArea { triangle: 1 });
+        assert_eq!(
+            check(&|_, _, t| t[1] = [0, 3, 2]),
+            Error::MixedWinding { edge: [0, 2], triangles: [0, 1] }
+        );
+        assert_eq!(
+            check(&|_, m, _| m.iter_mut().for_each(|m| m.x *= -1.0)),
+            Error::MirroredMaterial { triangle: 0 }
+        );
+        assert!(matches!(check(&|_, m, _| m.iter_mut().for_each(|m| *m *= 1e3)), Error::EdgeLength { .. }));
+        assert!(matches!(check(&|_, m, _| _ = m.pop()), Error::ShapeMismatch { .. }));
+        let (mut p, mut m, mut t) = square();
+        p.push(Vector3::new(0.5, 0.5, 1.0));
+        m.push(Vector2::new(0.5, 0.5));
+        t.push([2, 0, 4]);
+        assert!(matches!(
+            Mesh::new(p, m, t),
+            Err(Error::ThreeTriangles { edge: [0, 2], triangles: [0, 1, 2] })
+        ));
+    }
+
+    #[test]
+    fn separate_pieces_are_separate_parts() {
+        let (mut p, mut m, mut t) = square();
+        let (p2, m2, _) = square();
+        p.extend(p2.iter().map(|p| p + Vector3::x() * 5.0));
+        m.extend(m2);
+        t.extend([[4, 5, 6], [4, 6, 7]]);
+        assert_eq!(Mesh::new(p, m, t).unwrap().parts(), [0, 0, 0, 0, 4, 4, 4, 4]);
+    }
+}
