@@ -1,0 +1,457 @@
+//! The cloth: all elements of one problem, their total energy, its gradient and sparse Hessian.
+//!
+//! A problem lists the parts that it has. What is absent costs nothing: no hinge in a stretch problem's matrix, two
+//! unknowns a node where the motion is planar, no unknown for a node that is held.
+
+use crate::bending::Bending;
+use crate::element::{
+    Curvature, Element, EnergyPass, GradientPass, HessianPass, ParameterPass, Pass, PredictedStrainPass,
+    StrainPass, lower_entries,
+};
+use crate::error::{Error, Result};
+use crate::linear::{Pattern, order};
+use crate::load::{Held, lumped_masses};
+use crate::material::{Component, Curves, Model};
+use crate::membrane::Membrane;
+use crate::mesh::Mesh;
+use nalgebra::Vector3;
+use std::collections::BTreeSet;
+
+/// What a cloth problem consists of.
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    /// The sheet at rest.
+    pub mesh: &'a Mesh,
+    /// Which membrane and bending.
+    pub model: Model,
+    /// The components that store energy; the others are left out.
+    pub components: &'a [Component],
+    /// kg/m².
+    pub areal_density: f64,
+    /// m/s²; zero leaves the weight out.
+    pub gravity: Vector3<f64>,
+    /// Nodes at prescribed places.
+    pub held: &'a [Held],
+    /// All motion is in planes z = const: two unknowns a node.
+    pub planar: bool,
+}
+
+/// A problem made ready: elements, masses, numbering, matrix pattern and symbolic factorisation. Shared by all frames
+/// and threads; what changes lies in a [`Solver`](crate::equilibrium::Solver).
+#[derive(Debug)]
+pub struct Cloth {
+    membrane: Membrane,
+    bending: Option<Bending>,
+    /// Weight of every node, N; empty if there is none.
+    weights: Vec<Vector3<f64>>,
+    nodes: usize,
+    clips: usize,
+    clip_of: Vec<Option<usize>>,
+    planar: bool,
+    /// Index into stacked coordinates of every unknown.
+    unknowns: Vec<usize>,
+    pattern: Pattern,
+    /// Per part: where each lower entry of each element goes. See [`Cloth::hessian`].
+    targets: [Vec<u32>; 2],
+    /// Where the diagonal stands among the entries.
+    diagonal: Vec<usize>,
+}
+
+/// A coordinate that is no unknown.
+const HELD: usize = usize::MAX;
+
+impl Cloth {
+    /// Makes a problem ready.
+    ///
+    /// # Errors
+    /// Springs on a mesh that is no grid; a collapsed hinge; a density below zero; a held node that does not exist;
+    /// bending, or weight across the plane, in a planar problem; a part of the cloth that nothing holds.
+    pub fn new(problem: &Problem<'_>) -> Result<Self> {
+        let Problem { mesh, model, components, planar, .. } = *problem;
+        check(problem)?;
+        let membrane = Membrane::new(model, mesh, components)?;
+        let bending = Bending::new(model, mesh, components)?;
+        let weights = if problem.gravity == Vector3::zeros() {
+            Vec::new()
+        } else {
+            lumped_masses(mesh, problem.areal_density)
+                .into_iter()
+                .map(|mass| problem.gravity * mass)
+                .collect()
+        };
+        let mut held = vec![false; mesh.len()];
+        let mut clip_of = vec![None; mesh.len()];
+        for &Held { node, clip } in problem.held {
+            held[node] = true;
+            clip_of[node] = clip;
+        }
+        let mut graph = GraphPass { neighbours: vec![BTreeSet::new(); mesh.len()] };
+        visit(&membrane, bending.as_ref(), planar, &mut graph);
+        let unknowns = number(&held, &graph.neighbours, if planar { 2 } else { 3 });
+        let mut unknown_of = vec![HELD; 3 * mesh.len()];
+        unknowns.iter().enumerate().for_each(|(unknown, &coordinate)| unknown_of[coordinate] = unknown);
+        let columns = columns(&unknowns, &unknown_of, &graph.neighbours);
+        let too_large = Error::InvalidValue {
+            field: "nodes",
+            value: mesh.len() as f64,
+            expected: "a mesh whose factorisation fits into memory",
+        };
+        let pattern = Pattern::new(&columns).ok_or(too_large)?;
+        let diagonal = (0..unknowns.len()).filter_map(|unknown| pattern.position(unknown, unknown)).collect();
+        let clips = clip_of.iter().flatten().max().map_or(0, |&last| last + 1);
+        let mut scatter = ScatterPass {
+            unknown_of: &unknown_of,
+            clip_of: &clip_of,
+            pattern: &pattern,
+            clips,
+            targets: Default::default(),
+        };
+        visit(&membrane, bending.as_ref(), planar, &mut scatter);
+        let targets = scatter.targets;
+        Ok(Self {
+            membrane,
+            bending,
+            weights,
+            nodes: mesh.len(),
+            clips,
+            clip_of,
+            planar,
+            unknowns,
+            pattern,
+            targets,
+            diagonal,
+        })
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns.len()
+    }
+
+    /// Number of entries of the Hessian's lower triangle.
+    pub fn entries(&self) -> usize {
+        self.pattern.entries()
+    }
+
+    /// Number of entries of its Cholesky factor.
+    pub fn factor_entries(&self) -> usize {
+        self.pattern.factor_entries()
+    }
+
+    /// Number of clips.
+    pub fn clips(&self) -> usize {
+        self.clips
+    }
+
+    /// The membrane's elements.
+    pub fn membrane(&self) -> &Membrane {
+        &self.membrane
+    }
+
+    /// The bending elements, if the problem has any.
+    pub fn bending(&self) -> Option<&Bending> {
+        self.bending.as_ref()
+    }
+
+    /// Index into stacked coordinates of every unknown, in the order of the matrix.
+    pub fn unknown_coordinates(&self) -> &[usize] {
+        &self.unknowns
+    }
+
+    /// Total energy, J: elastic, less the work of the weight.
+    ///
+    /// * `x` — 3 stacked coordinates a node, m
+    pub fn energy(&self, curves: &Curves, x: &[f64]) -> f64 {
+        let mut pass = EnergyPass { curves, x, energy: 0.0 };
+        self.visit(&mut pass);
+        pass.energy + self.weight_energy(x)
+    }
+
+    /// Gradient of the total energy, N, 3 a node, held nodes included; returns the energy, J.
+    ///
+    /// The scale receives how large forces and rounding are; see [`ForceScale`].
+    pub fn gradient(&self, curves: &Curves, x: &[f64], gradient: &mut [f64], scale: &mut ForceScale) -> f64 {
+        gradient.fill(0.0);
+        scale.magnitude.fill(0.0);
+        scale.stiffness.fill(0.0);
+        let mut pass = GradientPass {
+            curves,
+            x,
+            gradient: &mut *gradient,
+            magnitude: &mut scale.magnitude,
+            stiffness: &mut scale.stiffness,
+            energy: 0.0,
+        };
+        self.visit(&mut pass);
+        let energy = pass.energy;
+        for (node, weight) in self.weights.iter().enumerate() {
+            (0..3).for_each(|i| gradient[3 * node + i] -= weight[i]);
+        }
+        energy + self.weight_energy(x)
+    }
+
+    /// The Hessian over the unknowns, and its border.
+    ///
+    /// `values` holds, in this order: the lower triangle by columns ([`Cloth::entries`]); the derivative of each clip's
+    /// summed gradient with respect to the unknowns, 3 × clips rows of [`Cloth::unknowns`] each; one number to ignore.
+    pub fn hessian(&self, curves: &Curves, x: &[f64], curvature: Curvature<'_>, values: &mut Vec<f64>) {
+        values.clear();
+        values.resize(self.entries() + self.border_len() + 1, 0.0);
+        let targets = [&self.targets[0][..], &self.targets[1][..]];
+        self.visit(&mut HessianPass { curves, x, curvature, targets, values });
+    }
+
+    /// ∂(gradient)/∂kᵢ for every control value of a component's curve: one column of 3 × nodes each, N per unit of
+    /// stiffness.
+    pub fn parameter_gradient(
+        &self,
+        curves: &Curves,
+        component: Component,
+        x: &[f64],
+        columns: &mut Vec<f64>,
+    ) {
+        let points = curves.get(component).map_or(0, |curve| curve.len());
+        columns.clear();
+        columns.resize(points * 3 * self.nodes, 0.0);
+        let mut weights = vec![0.0; points];
+        self.visit(&mut ParameterPass { curves, x, component, weights: &mut weights, columns });
+    }
+
+    /// All strains of a component, each with the area (m²) it stands for.
+    pub fn strains(&self, component: Component, x: &[f64]) -> Vec<[f64; 2]> {
+        let mut pass = StrainPass { x, component, strains: Vec::new() };
+        self.visit(&mut pass);
+        pass.strains
+    }
+
+    /// The gradient summed over each clip's nodes, N: the force that holds the clip, apart from its own weight.
+    pub fn clip_forces(&self, gradient: &[f64]) -> Vec<Vector3<f64>> {
+        let mut forces = vec![Vector3::zeros(); self.clips];
+        for (node, clip) in self.clip_of.iter().enumerate() {
+            if let Some(clip) = *clip {
+                forces[clip] += Vector3::from_column_slice(&gradient[3 * node..3 * node + 3]);
+            }
+        }
+        forces
+    }
+
+    /// The membrane's strains to first order after a step, for [`Curvature::Mixed`].
+    pub(crate) fn predicted_strains(&self, x: &[f64], step: &[f64], strains: &mut Vec<f64>) {
+        self.visit(&mut PredictedStrainPass { x, step, strains });
+    }
+
+    /// True if a hinge turns by more than half a turn between two states: its angle then has jumped across ±π.
+    pub(crate) fn hinge_jumps(&self, x: &[f64], to: &[f64]) -> bool {
+        let Some(Bending::DiscreteShells(hinges)) = &self.bending else { return false };
+        hinges.iter().any(|hinge| {
+            let angle = |x: &[f64]| {
+                hinge.strains(&crate::element::gather::<4, 3>(hinge.nodes, x))[0] * hinge.width
+                    + hinge.rest_angle
+            };
+            (angle(to) - angle(x)).abs() > std::f64::consts::PI
+        })
+    }
+
+    pub(crate) fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    pub(crate) fn diagonal(&self) -> &[usize] {
+        &self.diagonal
+    }
+
+    pub(crate) fn is_planar(&self) -> bool {
+        self.planar
+    }
+
+    /// Weight of a node, N.
+    pub(crate) fn weight(&self, node: usize) -> f64 {
+        self.weights.get(node).map_or(0.0, Vector3::norm)
+    }
+
+    fn border_len(&self) -> usize {
+        3 * self.clips * self.unknowns.len()
+    }
+
+    fn weight_energy(&self, x: &[f64]) -> f64 {
+        let node = |(weight, x): (&Vector3<f64>, &[f64])| -weight.dot(&Vector3::from_column_slice(x));
+        self.weights.iter().zip(x.chunks_exact(3)).map(node).sum()
+    }
+
+    fn visit(&self, pass: &mut impl Pass) {
+        visit(&self.membrane, self.bending.as_ref(), self.planar, pass);
+    }
+}
+
+/// How large the forces at every node are, by which an imbalance is judged.
+#[derive(Debug, Clone, Default)]
+pub struct ForceScale {
+    /// Σ over a node's elements of their force on it, N.
+    pub magnitude: Vec<f64>,
+    /// Stiffness through which an error of position becomes a force, N/m.
+    pub stiffness: Vec<f64>,
+}
+
+impl ForceScale {
+    /// Room for a cloth's nodes.
+    pub fn new(nodes: usize) -> Self {
+        Self { magnitude: vec![0.0; nodes], stiffness: vec![0.0; nodes] }
+    }
+}
+
+/// The one place where models meet the loops over their elements.
+fn visit(membrane: &Membrane, bending: Option<&Bending>, planar: bool, pass: &mut impl Pass) {
+    match (membrane, planar) {
+        (Membrane::Springs(elements), true) => pass.visit::<2, 2, 1, _>(0, elements),
+        (Membrane::Springs(elements), false) => pass.visit::<2, 3, 1, _>(0, elements),
+        (Membrane::SoftConstraint(elements), true) => pass.visit::<3, 2, 3, _>(0, elements),
+        (Membrane::SoftConstraint(elements), false) => pass.visit::<3, 3, 3, _>(0, elements),
+        (Membrane::Stvk(elements), true) => pass.visit::<3, 2, 3, _>(0, elements),
+        (Membrane::Stvk(elements), false) => pass.visit::<3, 3, 3, _>(0, elements),
+    }
+    match bending {
+        Some(Bending::Springs(elements)) => pass.visit::<2, 3, 1, _>(1, elements),
+        Some(Bending::DiscreteShells(elements)) => pass.visit::<4, 3, 1, _>(1, elements),
+        None => {}
+    }
+}
+
+fn check(problem: &Problem<'_>) -> Result<()> {
+    let density = problem.areal_density;
+    if !(density >= 0.0 && density.is_finite()) {
+        return Err(Error::InvalidValue {
+            field: "areal_density",
+            value: density,
+            expected: "0 or more, in kg/m²",
+        });
+    }
+    let bends = problem.components.iter().any(|component| component.is_bending());
+    if problem.planar && (bends || problem.gravity.z != 0.0) {
+        return Err(Error::InvalidValue {
+            field: "planar",
+            value: 1.0,
+            expected: "a problem without bending and without weight across its plane",
+        });
+    }
+    let mesh = problem.mesh;
+    if let Some(held) = problem.held.iter().find(|held| held.node >= mesh.len()) {
+        return Err(Error::ShapeMismatch { what: "held node", expected: mesh.len(), found: held.node });
+    }
+    let parts = mesh.parts();
+    let held: BTreeSet<usize> = problem.held.iter().map(|held| parts[held.node]).collect();
+    match parts.iter().find(|part| !held.contains(part)) {
+        Some(&vertex) => Err(Error::Unpinned {
+            vertex,
+            vertices: parts.iter().filter(|&&part| part == vertex).count(),
+            free: if problem.planar { 3 } else { 6 },
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Unknowns in an order of the nodes that keeps the factor sparse, the coordinates of a node together.
+fn number(held: &[bool], neighbours: &[BTreeSet<usize>], coordinates: usize) -> Vec<usize> {
+    let free: Vec<usize> = (0..held.len()).filter(|&node| !held[node]).collect();
+    let mut place = vec![HELD; held.len()];
+    free.iter().enumerate().for_each(|(index, &node)| place[node] = index);
+    let graph: Vec<Vec<usize>> = free
+        .iter()
+        .map(|&node| {
+            neighbours[node].iter().map(|&other| place[other]).filter(|&other| other != HELD).collect()
+        })
+        .collect();
+    order(&graph)
+        .into_iter()
+        .flat_map(|index| (0..coordinates).map(move |i| (index, i)))
+        .map(|(index, i)| 3 * free[index] + i)
+        .collect()
+}
+
+/// Row indices of the lower triangle, column by column.
+fn columns(unknowns: &[usize], unknown_of: &[usize], neighbours: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
+    unknowns
+        .iter()
+        .enumerate()
+        .map(|(column, &coordinate)| {
+            let node = coordinate / 3;
+            let around = neighbours[node].iter().copied().chain([node]);
+            let mut rows: Vec<usize> = around
+                .flat_map(|other| (0..3).map(move |i| 3 * other + i))
+                .map(|coordinate| unknown_of[coordinate])
+                .filter(|&row| row != HELD && row >= column)
+                .collect();
+            rows.sort_unstable();
+            rows
+        })
+        .collect()
+}
+
+/// Which nodes share an element.
+struct GraphPass {
+    neighbours: Vec<BTreeSet<usize>>,
+}
+
+impl Pass for GraphPass {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        _part: usize,
+        elements: &[E],
+    ) {
+        for element in elements {
+            let nodes = element.nodes();
+            for from in nodes {
+                self.neighbours[from].extend(nodes.iter().filter(|&&to| to != from));
+            }
+        }
+    }
+}
+
+/// Where every entry of every element's Hessian goes.
+struct ScatterPass<'a> {
+    unknown_of: &'a [usize],
+    clip_of: &'a [Option<usize>],
+    pattern: &'a Pattern,
+    clips: usize,
+    targets: [Vec<u32>; 2],
+}
+
+impl ScatterPass<'_> {
+    fn target(&self, [first, second]: [(usize, usize); 2]) -> usize {
+        let unknown = |(node, i): (usize, usize)| self.unknown_of[3 * node + i];
+        let border = |(node, i): (usize, usize), column: usize| {
+            self.clip_of[node]
+                .map(|clip| self.pattern.entries() + (3 * clip + i) * self.pattern.size() + column)
+        };
+        let place = match (unknown(first), unknown(second)) {
+            (HELD, HELD) => None,
+            (HELD, column) => border(first, column),
+            (column, HELD) => border(second, column),
+            (a, b) => self.pattern.position(a.max(b), a.min(b)),
+        };
+        // What nobody reads goes to the last place.
+        place.unwrap_or(self.pattern.entries() + 3 * self.clips * self.pattern.size())
+    }
+}
+
+impl Pass for ScatterPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        part: usize,
+        elements: &[E],
+    ) {
+        let entries = lower_entries(K, N);
+        let mut targets = Vec::with_capacity(entries.len() * elements.len());
+        for element in elements {
+            let nodes = element.nodes();
+            targets.extend(
+                entries.iter().map(|entry| self.target(entry.map(|(node, i)| (nodes[node], i))) as u32),
+            );
+        }
+        self.targets[part] = targets;
+    }
+}

@@ -1,0 +1,534 @@
+//! Stiffness curves: stiffness against strain as a Hermite spline through control points.
+//!
+//! ```text
+//! σ(ε) = k(ε) ε,   k a cubic Hermite spline through (εᵢ, kᵢ)
+//! slopes  mᵢ = (kᵢ₊₁ − kᵢ₋₁)/(εᵢ₊₁ − εᵢ₋₁) inside, one-sided at the two ends
+//! beyond the last control point   σ = σₙ + Tₙ (ε − εₙ),   Tₙ = kₙ + εₙ mₙ
+//! below zero                      see NegativeStrain
+//! ```
+//!
+//! The slopes are linear in the control values, so stress, tangent and energy are linear in them too. That makes a fit
+//! of the kᵢ a linear problem at known strains, and [`stability_rows`] linear constraints.
+//!
+//! Source: Miguel et al. 2012, §4.2 (Hermite stiffness, one control point = the linear model); the slopes, the end and
+//! the compression rule are ours: docs/model.md.
+
+use crate::error::{Error, Result};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+/// How stress is read at negative strain. Every rule keeps stress and tangent continuous at zero, except `Slack`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NegativeStrain {
+    /// σ(−ε) = −σ(ε): shear and bending.
+    Odd,
+    /// σ = k₀ε: compression with the stiffness at zero, for strains that are changes of length.
+    Linear,
+    /// σ = k₀[1 − (1 + 2ε)^(−½)]: the same for Green strain, so that the nominal stress is k₀(λ − 1). Finite at
+    /// collapse, where linear StVK would lose its stiffness at ε = −1/3.
+    Green,
+    /// σ = 0: tension only.
+    Slack,
+}
+
+/// Stress and its derivative at one strain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    /// σ, N/m (bending: N).
+    pub stress: f64,
+    /// dσ/dε, in the units of stiffness.
+    pub tangent: f64,
+}
+
+/// One cubic piece: k = c₀ + c₁t + c₂t² + c₃t³ with t = ε − start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Segment {
+    start: f64,
+    coefficients: [f64; 4],
+    /// Energy density at `start`.
+    energy: f64,
+}
+
+impl Segment {
+    fn stiffness(&self, t: f64) -> f64 {
+        let [a, b, c, d] = self.coefficients;
+        a + t * (b + t * (c + t * d))
+    }
+
+    fn slope(&self, t: f64) -> f64 {
+        let [_, b, c, d] = self.coefficients;
+        b + t * (2.0 * c + t * 3.0 * d)
+    }
+
+    /// ∫ (start + t) k(t) dt from 0 to t, added to the energy at the start.
+    fn energy(&self, t: f64) -> f64 {
+        let [a, b, c, d] = self.coefficients;
+        let first = t * (a + t * (b / 2.0 + t * (c / 3.0 + t * d / 4.0)));
+        let second = t * t * (a / 2.0 + t * (b / 3.0 + t * (c / 4.0 + t * d / 5.0)));
+        self.energy + self.start * first + second
+    }
+}
+
+/// A stiffness curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StiffnessCurve {
+    strains: Vec<f64>,
+    stiffnesses: Vec<f64>,
+    negative: NegativeStrain,
+    segments: Vec<Segment>,
+    /// Energy density, stress and tangent at the last control point.
+    end: (f64, Response),
+}
+
+impl StiffnessCurve {
+    /// A curve through control points.
+    ///
+    /// * `strains` — ascending, the first 0 unless it is the only one
+    /// * `stiffnesses` — as many, N/m (bending: N·m per the hinge's own strain)
+    ///
+    /// # Errors
+    /// Empty or unequal lists; values that are not finite; strains that do not ascend or do not start at zero.
+    pub fn new(strains: Vec<f64>, stiffnesses: Vec<f64>, negative: NegativeStrain) -> Result<Self> {
+        check_strains(&strains)?;
+        if stiffnesses.len() != strains.len() {
+            return Err(Error::ShapeMismatch {
+                what: "stiffnesses",
+                expected: strains.len(),
+                found: stiffnesses.len(),
+            });
+        }
+        if let Some(point) = stiffnesses.iter().position(|k| !k.is_finite()) {
+            return Err(Error::Curve { point, reason: "its stiffness is not finite" });
+        }
+        let mut energy = 0.0;
+        let mut segments: Vec<Segment> = Vec::with_capacity(strains.len());
+        for (index, pair) in strains.windows(2).enumerate() {
+            let coefficients = segment_rows(&strains, index)
+                .map(|row| row.iter().zip(&stiffnesses).map(|(weight, k)| weight * k).sum());
+            let segment = Segment { start: pair[0], coefficients, energy };
+            energy = segment.energy(pair[1] - pair[0]);
+            segments.push(segment);
+        }
+        let end = match segments.last() {
+            None => {
+                let (strain, k) = (strains[0], stiffnesses[0]);
+                (0.5 * k * strain * strain, Response { stress: k * strain, tangent: k })
+            }
+            Some(last) => {
+                let strain = strains[strains.len() - 1];
+                let (k, slope) = (stiffnesses[stiffnesses.len() - 1], last.slope(strain - last.start));
+                (energy, Response { stress: k * strain, tangent: k + strain * slope })
+            }
+        };
+        Ok(Self { strains, stiffnesses, negative, segments, end })
+    }
+
+    /// Constant stiffness: the linear model.
+    ///
+    /// # Errors
+    /// A stiffness that is not finite.
+    pub fn constant(stiffness: f64, negative: NegativeStrain) -> Result<Self> {
+        Self::new(vec![0.0], vec![stiffness], negative)
+    }
+
+    /// Strains of the control points.
+    pub fn strains(&self) -> &[f64] {
+        &self.strains
+    }
+
+    /// Stiffnesses of the control points.
+    pub fn stiffnesses(&self) -> &[f64] {
+        &self.stiffnesses
+    }
+
+    /// How stress is read at negative strain.
+    pub fn negative(&self) -> NegativeStrain {
+        self.negative
+    }
+
+    /// Number of control points.
+    pub fn len(&self) -> usize {
+        self.strains.len()
+    }
+
+    /// False: a curve has at least one control point.
+    pub fn is_empty(&self) -> bool {
+        self.strains.is_empty()
+    }
+
+    /// The same strains with other stiffnesses.
+    ///
+    /// # Errors
+    /// As [`StiffnessCurve::new`].
+    pub fn with_stiffnesses(&self, stiffnesses: Vec<f64>) -> Result<Self> {
+        Self::new(self.strains.clone(), stiffnesses, self.negative)
+    }
+
+    /// Stress and tangent at a strain.
+    pub fn response(&self, strain: f64) -> Response {
+        if strain >= 0.0 {
+            return self.positive(strain);
+        }
+        let k = self.stiffnesses[0];
+        match self.negative {
+            NegativeStrain::Odd => {
+                let Response { stress, tangent } = self.positive(-strain);
+                Response { stress: -stress, tangent }
+            }
+            NegativeStrain::Linear => Response { stress: k * strain, tangent: k },
+            NegativeStrain::Green => {
+                let stretch = (1.0 + 2.0 * strain).max(COLLAPSED).sqrt();
+                Response { stress: k * (1.0 - 1.0 / stretch), tangent: k / (stretch * stretch * stretch) }
+            }
+            NegativeStrain::Slack => Response { stress: 0.0, tangent: 0.0 },
+        }
+    }
+
+    /// Stress at a strain.
+    pub fn stress(&self, strain: f64) -> f64 {
+        self.response(strain).stress
+    }
+
+    /// Secant stiffness σ/ε at a strain.
+    pub fn stiffness(&self, strain: f64) -> f64 {
+        if strain == 0.0 { self.stiffnesses[0] } else { self.stress(strain) / strain }
+    }
+
+    /// Energy density ∫σ dε from zero to a strain.
+    pub fn energy(&self, strain: f64) -> f64 {
+        if strain >= 0.0 {
+            return self.positive_energy(strain);
+        }
+        let k = self.stiffnesses[0];
+        match self.negative {
+            NegativeStrain::Odd => self.positive_energy(-strain),
+            NegativeStrain::Linear => 0.5 * k * strain * strain,
+            // ε − √(1+2ε) + 1 = ½(λ − 1)², written without cancellation.
+            NegativeStrain::Green => {
+                let stretch = (1.0 + 2.0 * strain).max(COLLAPSED).sqrt();
+                0.5 * k * (stretch - 1.0) * (stretch - 1.0)
+            }
+            NegativeStrain::Slack => 0.0,
+        }
+    }
+
+    /// ∂σ/∂kᵢ at a strain for every control point, into `weights`.
+    ///
+    /// # Panics
+    /// If `weights` has another length than the curve has control points.
+    pub fn weights(&self, strain: f64, weights: &mut [f64]) {
+        assert_eq!(weights.len(), self.len(), "one weight a control point");
+        weights.fill(0.0);
+        if strain >= 0.0 {
+            stress_row(&self.strains, strain, weights);
+        } else if self.negative == NegativeStrain::Odd {
+            stress_row(&self.strains, -strain, weights);
+            weights.iter_mut().for_each(|weight| *weight = -*weight);
+        } else {
+            // In compression the stress is proportional to k₀, whatever the rule.
+            weights[0] = match self.negative {
+                NegativeStrain::Green => 1.0 - 1.0 / (1.0 + 2.0 * strain).max(COLLAPSED).sqrt(),
+                NegativeStrain::Slack => 0.0,
+                _ => strain,
+            };
+        }
+    }
+
+    /// The curve through more, equidistant control points over [0, `last`].
+    ///
+    /// # Errors
+    /// A range that is not positive, or no point.
+    pub fn resampled(&self, points: usize, last: f64) -> Result<Self> {
+        let strains = equidistant(points, last);
+        let stiffnesses = strains.iter().map(|&strain| self.stiffness(strain)).collect();
+        Self::new(strains, stiffnesses, self.negative)
+    }
+
+    fn positive(&self, strain: f64) -> Response {
+        match self.segment(strain) {
+            Some(segment) => {
+                let t = strain - segment.start;
+                let k = segment.stiffness(t);
+                Response { stress: k * strain, tangent: k + strain * segment.slope(t) }
+            }
+            None => {
+                let Response { stress, tangent } = self.end.1;
+                let beyond = strain - self.strains[self.strains.len() - 1];
+                Response { stress: stress + tangent * beyond, tangent }
+            }
+        }
+    }
+
+    fn positive_energy(&self, strain: f64) -> f64 {
+        match self.segment(strain) {
+            Some(segment) => segment.energy(strain - segment.start),
+            None => {
+                let (energy, Response { stress, tangent }) = self.end;
+                let beyond = strain - self.strains[self.strains.len() - 1];
+                energy + beyond * (stress + 0.5 * tangent * beyond)
+            }
+        }
+    }
+
+    /// The piece that holds a strain ≥ 0; `None` beyond the last control point.
+    fn segment(&self, strain: f64) -> Option<&Segment> {
+        let index = self.strains.iter().skip(1).position(|&end| strain <= end)?;
+        self.segments.get(index)
+    }
+}
+
+/// Smallest 1 + 2ε that compression is evaluated at: a collapsed triangle has 0, rounding may take it below.
+const COLLAPSED: f64 = 1e-12;
+
+/// `points` equidistant strains from 0 to `last`; a single point stands at 0.
+pub fn equidistant(points: usize, last: f64) -> Vec<f64> {
+    match points {
+        0 | 1 => vec![0.0; points],
+        _ => (0..points).map(|i| last * i as f64 / (points - 1) as f64).collect(),
+    }
+}
+
+fn check_strains(strains: &[f64]) -> Result<()> {
+    if strains.is_empty() {
+        return Err(Error::Curve { point: 0, reason: "a curve needs at least one control point" });
+    }
+    if let Some(point) = strains.iter().position(|strain| !strain.is_finite()) {
+        return Err(Error::Curve { point, reason: "its strain is not finite" });
+    }
+    if let Some(point) = strains.windows(2).position(|pair| pair[0] >= pair[1]) {
+        return Err(Error::Curve { point: point + 1, reason: "its strain is not above the one before" });
+    }
+    if strains[0] != 0.0 && strains.len() > 1 || strains[0] < 0.0 {
+        return Err(Error::Curve { point: 0, reason: "the first strain must be zero" });
+    }
+    Ok(())
+}
+
+/// Slope mᵢ as a row over the control values.
+fn slope_row(strains: &[f64], point: usize) -> Vec<f64> {
+    let [low, high] = [point.saturating_sub(1), (point + 1).min(strains.len() - 1)];
+    let mut row = vec![0.0; strains.len()];
+    row[high] += 1.0 / (strains[high] - strains[low]);
+    row[low] -= 1.0 / (strains[high] - strains[low]);
+    row
+}
+
+/// The four coefficients of a segment, each a row over the control values.
+fn segment_rows(strains: &[f64], segment: usize) -> [Vec<f64>; 4] {
+    let width = strains[segment + 1] - strains[segment];
+    let [m0, m1] = [slope_row(strains, segment), slope_row(strains, segment + 1)];
+    let unit = |point: usize, i: usize| if i == point { 1.0 } else { 0.0 };
+    let row = |entry: &dyn Fn(f64, f64, f64, f64) -> f64| -> Vec<f64> {
+        (0..strains.len())
+            .map(|i| entry(unit(segment, i), (unit(segment + 1, i) - unit(segment, i)) / width, m0[i], m1[i]))
+            .collect()
+    };
+    [
+        row(&|k0, _, _, _| k0),
+        row(&|_, _, m0, _| m0),
+        row(&|_, secant, m0, m1| (3.0 * secant - 2.0 * m0 - m1) / width),
+        row(&|_, secant, m0, m1| (m0 + m1 - 2.0 * secant) / (width * width)),
+    ]
+}
+
+/// Stress at a strain ≥ 0 as a row over the control values, added to `row`.
+fn stress_row(strains: &[f64], strain: f64, row: &mut [f64]) {
+    let last = strains.len() - 1;
+    if last == 0 {
+        row[0] += strain;
+        return;
+    }
+    // σ = k(ε)ε inside; beyond the end σₙ + Tₙ(ε − εₙ) = kₙε + εₙmₙ(ε − εₙ).
+    match strains.iter().skip(1).position(|&end| strain <= end) {
+        Some(segment) => {
+            let t = strain - strains[segment];
+            for (power, coefficients) in segment_rows(strains, segment).iter().enumerate() {
+                let factor = strain * t.powi(power as i32);
+                row.iter_mut().zip(coefficients).for_each(|(entry, c)| *entry += factor * c);
+            }
+        }
+        None => {
+            row[last] += strain;
+            let factor = strains[last] * (strain - strains[last]);
+            row.iter_mut().zip(slope_row(strains, last)).for_each(|(entry, m)| *entry += factor * m);
+        }
+    }
+}
+
+/// Rows C with C·k ≥ κ ⇒ dσ/dε ≥ κ everywhere from zero on, and with it k ≥ 0.
+///
+/// The tangent σ′ = k + εk′ is a cubic on every segment; its Bernstein coefficients bound it from below:
+///
+/// ```text
+/// d₀ = k₀ + ε₀m₀                    d₁ = k₀ + ⅔h m₀ + ε₀[2s − (m₀ + 2m₁)/3]
+/// d₃ = k₁ + ε₁m₁                    d₂ = k₁ − ⅔h m₁ + ε₁[2s − (2m₀ + m₁)/3]       s = (k₁ − k₀)/h
+/// ```
+///
+/// Two de Casteljau halvings tighten the bound (13 rows a segment): they certify 98 % of the curves that are monotone.
+///
+/// # Errors
+/// Strains that no curve can have.
+pub fn stability_rows(strains: &[f64]) -> Result<DMatrix<f64>> {
+    check_strains(strains)?;
+    let points = strains.len();
+    if points == 1 {
+        return Ok(DMatrix::identity(1, 1));
+    }
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for segment in 0..points - 1 {
+        let [e0, e1] = [strains[segment], strains[segment + 1]];
+        let width = e1 - e0;
+        let [m0, m1] = [slope_row(strains, segment), slope_row(strains, segment + 1)];
+        let row = |entry: &dyn Fn(f64, f64, f64, f64) -> f64| -> Vec<f64> {
+            let unit = |point: usize, i: usize| if i == point { 1.0 } else { 0.0 };
+            (0..points).map(|i| entry(unit(segment, i), unit(segment + 1, i), m0[i], m1[i])).collect()
+        };
+        let secant = |k0: f64, k1: f64| 2.0 * (k1 - k0) / width;
+        let bernstein = [
+            row(&|k0, _, m0, _| k0 + e0 * m0),
+            row(&|k0, k1, m0, m1| {
+                k0 + 2.0 / 3.0 * width * m0 + e0 * (secant(k0, k1) - (m0 + 2.0 * m1) / 3.0)
+            }),
+            row(&|k0, k1, m0, m1| {
+                k1 - 2.0 / 3.0 * width * m1 + e1 * (secant(k0, k1) - (2.0 * m0 + m1) / 3.0)
+            }),
+            row(&|_, k1, _, m1| k1 + e1 * m1),
+        ];
+        let (left, right) = halve(bernstein);
+        for (index, piece) in
+            [left, right].into_iter().flat_map(|half| <[_; 2]>::from(halve(half))).enumerate()
+        {
+            // Neighbouring pieces share an end.
+            rows.extend(piece.into_iter().skip(usize::from(index > 0)));
+        }
+    }
+    Ok(DMatrix::from_fn(rows.len(), points, |i, j| rows[i][j]))
+}
+
+/// De Casteljau: the Bernstein coefficients of the two halves of a cubic.
+fn halve([a, b, c, d]: [Vec<f64>; 4]) -> ([Vec<f64>; 4], [Vec<f64>; 4]) {
+    let mean = |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(p, q)| 0.5 * (p + q)).collect() };
+    let [ab, bc, cd] = [mean(&a, &b), mean(&b, &c), mean(&c, &d)];
+    let [abc, bcd] = [mean(&ab, &bc), mean(&bc, &cd)];
+    let middle = mean(&abc, &bcd);
+    ([a, ab, abc, middle.clone()], [middle, bcd, cd, d])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng, rngs::StdRng};
+
+    fn random_curve(rng: &mut StdRng, negative: NegativeStrain) -> StiffnessCurve {
+        let points = rng.random_range(1..6);
+        let stiffnesses = (0..points).map(|_| 10f64.powf(rng.random_range(0.0..3.0))).collect();
+        StiffnessCurve::new(equidistant(points, 0.3), stiffnesses, negative).unwrap()
+    }
+
+    const RULES: [NegativeStrain; 4] =
+        [NegativeStrain::Odd, NegativeStrain::Linear, NegativeStrain::Green, NegativeStrain::Slack];
+
+    #[test]
+    fn energy_stress_tangent_and_weights_agree() {
+        let mut rng = StdRng::seed_from_u64(1);
+        for trial in 0..2000 {
+            let curve = random_curve(&mut rng, RULES[trial % 4]);
+            let strain: f64 = rng.random_range(-0.3..0.5);
+            let h = 1e-5;
+            // A difference across a kink of the tangent is of lower order: keep away from the control points.
+            if curve.strains().iter().any(|knot| (strain.abs() - knot).abs() < 2.0 * h) {
+                continue;
+            }
+            let scale = curve.stiffnesses().iter().fold(0.0, |a: f64, &b| a.max(b)) * 10.0;
+            let Response { stress, tangent } = curve.response(strain);
+            let difference = |f: &dyn Fn(f64) -> f64| (f(strain + h) - f(strain - h)) / (2.0 * h);
+            assert!((difference(&|e| curve.energy(e)) - stress).abs() < 1e-6 * scale);
+            assert!((difference(&|e| curve.stress(e)) - tangent).abs() < 1e-5 * scale);
+            let mut weights = vec![0.0; curve.len()];
+            curve.weights(strain, &mut weights);
+            let sum: f64 = weights.iter().zip(curve.stiffnesses()).map(|(w, k)| w * k).sum();
+            assert!((sum - stress).abs() <= 1e-12 * scale, "{sum} {stress}");
+        }
+    }
+
+    #[test]
+    fn stress_and_tangent_are_continuous_everywhere() {
+        let mut rng = StdRng::seed_from_u64(2);
+        for rule in [NegativeStrain::Odd, NegativeStrain::Linear, NegativeStrain::Green] {
+            let curve = random_curve(&mut rng, rule);
+            for &knot in curve.strains() {
+                let [low, high] = [knot - 1e-13, knot + 1e-13].map(|strain| curve.response(strain));
+                let scale = curve.stiffnesses().iter().sum::<f64>();
+                assert!((low.stress - high.stress).abs() < 1e-10 * scale);
+                assert!((low.tangent - high.tangent).abs() < 1e-8 * scale);
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_passes_its_points_and_one_point_is_linear() {
+        let curve =
+            StiffnessCurve::new(vec![0.0, 0.1, 0.3], vec![5.0, 7.0, 1.0], NegativeStrain::Odd).unwrap();
+        for (strain, k) in [(0.0, 5.0), (0.1, 7.0), (0.3, 1.0)] {
+            assert!((curve.stiffness(strain) - k).abs() < 1e-12);
+        }
+        let linear = StiffnessCurve::constant(4.0, NegativeStrain::Linear).unwrap();
+        for strain in [-0.4, 0.0, 0.2, 7.0] {
+            assert_eq!(linear.stress(strain), 4.0 * strain);
+            assert_eq!(linear.energy(strain), 2.0 * strain * strain);
+        }
+    }
+
+    #[test]
+    fn green_compression_is_linear_in_the_change_of_length() {
+        let curve = StiffnessCurve::constant(3.0, NegativeStrain::Green).unwrap();
+        for stretch in [0.1, 0.5, 0.9f64] {
+            let green = 0.5 * (stretch * stretch - 1.0);
+            assert!((stretch * curve.stress(green) - 3.0 * (stretch - 1.0)).abs() < 1e-12);
+        }
+        assert!(curve.response(-0.5).stress.is_finite() && curve.response(-0.6).tangent.is_finite());
+    }
+
+    #[test]
+    fn stability_rows_bound_the_tangent_from_below_and_are_tight() {
+        let mut rng = StdRng::seed_from_u64(3);
+        let (mut monotone, mut certified) = (0, 0);
+        let strains = equidistant(5, 0.2);
+        let rows = stability_rows(&strains).unwrap();
+        assert_eq!(rows.nrows(), 4 * 13);
+        for _ in 0..4000 {
+            // Around a growing curve, so that a good share is monotone.
+            let k: Vec<f64> = (0..5).map(|i| 1.0 + i as f64 + rng.random_range(-2.0..2.0)).collect();
+            let curve = StiffnessCurve::new(strains.clone(), k.clone(), NegativeStrain::Odd).unwrap();
+            let lowest = (0..=2000).map(|i| curve.response(i as f64 * 1e-4).tangent).fold(f64::MAX, f64::min);
+            let bound = (&rows * nalgebra::DVector::from_vec(k)).min();
+            assert!(bound <= lowest + 1e-9, "{bound} {lowest}");
+            monotone += usize::from(lowest >= 0.0);
+            certified += usize::from(bound >= 0.0);
+            if bound >= 0.0 {
+                assert!((0..=2000).all(|i| curve.stress(i as f64 * 1e-4) >= 0.0));
+            }
+        }
+        assert!(monotone > 500 && certified as f64 >= 0.95 * monotone as f64, "{certified} of {monotone}");
+    }
+
+    #[test]
+    fn bad_control_points_are_named() {
+        let point = |strains: &[f64], k: &[f64]| match StiffnessCurve::new(
+            strains.to_vec(),
+            k.to_vec(),
+            NegativeStrain::Odd,
+        )
+        .unwrap_err()
+        {
+            Error::Curve { point, .. } => point,
+            other => panic!("{other}"),
+        };
+        assert_eq!(point(&[], &[]), 0);
+        assert_eq!(point(&[0.0, 0.1, 0.1], &[1.0; 3]), 2);
+        assert_eq!(point(&[0.0, f64::NAN], &[1.0; 2]), 1);
+        assert_eq!(point(&[0.1, 0.2], &[1.0; 2]), 0);
+        assert_eq!(point(&[0.0, 0.2], &[1.0, f64::INFINITY]), 1);
+    }
+}

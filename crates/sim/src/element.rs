@@ -1,0 +1,304 @@
+//! One element's mathematics, and the sums over all elements of a kind.
+//!
+//! Every element of every model is **strain measure × curve → energy**:
+//!
+//! ```text
+//! E   = A Σ_c W_c(ε_c)                                   A the area that the element stands for
+//! ∇E  = A Σ_c σ_c ∇ε_c                                   σ_c = W_c′, from the component's curve
+//! ∇²E = A Σ_c [ σ_c′ ∇ε_c ∇ε_cᵀ + σ_c ∇²ε_c ]            stiffness and geometric part
+//! ```
+//!
+//! An element sees `N` coordinates a node: 3 in space, 2 where the motion is planar.
+//!
+//! Source: Miguel et al. 2012, §4.1.
+
+use crate::material::{Component, Curves};
+use nalgebra::{SMatrix, SVector};
+
+/// The first `N` coordinates of a node, m.
+pub type Point<const N: usize> = SVector<f64, N>;
+
+/// A block of a Hessian between two nodes.
+pub type Block<const N: usize> = SMatrix<f64, N, N>;
+
+/// `S` strains over `K` nodes with `N` coordinates each: springs (2 nodes, 1 strain), triangles (3, 3), hinges (4, 1).
+pub trait Element<const K: usize, const N: usize, const S: usize> {
+    /// The nodes.
+    fn nodes(&self) -> [usize; K];
+
+    /// The component of each strain.
+    fn components(&self) -> [Component; S];
+
+    /// The area that the element's energy density is integrated over, m².
+    fn area(&self) -> f64;
+
+    /// The strains (bending: 1/m).
+    fn strains(&self, x: &[Point<N>; K]) -> [f64; S];
+
+    /// Their derivatives with respect to every node, 1/m.
+    fn gradients(&self, x: &[Point<N>; K]) -> [[Point<N>; K]; S];
+
+    /// The geometric part Σ_c σ_c ∇²ε_c; blocks `[a][b]` with b ≤ a are read.
+    fn geometric(&self, x: &[Point<N>; K], stress: &[f64; S]) -> [[Block<N>; K]; K];
+
+    /// The same, changed as little as is simple so that it is positive semi-definite.
+    fn geometric_clamped(&self, x: &[Point<N>; K], stress: &[f64; S]) -> [[Block<N>; K]; K];
+}
+
+/// The nodes' coordinates, from three stacked coordinates a node.
+pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [Point<N>; K] {
+    nodes.map(|node| Point::from_column_slice(&x[3 * node..3 * node + N]))
+}
+
+/// Which matrix a Newton step is made with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curvature<'a> {
+    /// The true second derivative.
+    Full,
+    /// Geometric part from the given strains instead of the true ones, `S` an element.
+    Mixed(&'a [f64]),
+    /// Geometric part clamped to be positive semi-definite, element by element.
+    Clamped,
+}
+
+/// A pass over all elements of the cloth, whatever their kind.
+pub(crate) trait Pass {
+    /// Visits the membrane's or the bending's elements; `part` is 0 or 1.
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        part: usize,
+        elements: &[E],
+    );
+}
+
+/// Σ energies, J.
+pub(crate) struct EnergyPass<'a> {
+    pub(crate) curves: &'a Curves,
+    pub(crate) x: &'a [f64],
+    pub(crate) energy: f64,
+}
+
+impl Pass for EnergyPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        _part: usize,
+        elements: &[E],
+    ) {
+        for element in elements {
+            let strains = element.strains(&gather(element.nodes(), self.x));
+            let density: f64 = (0..S)
+                .filter_map(|c| Some(self.curves.get(element.components()[c])?.energy(strains[c])))
+                .sum();
+            self.energy += element.area() * density;
+        }
+    }
+}
+
+/// Σ gradients, N, and what rounding may make of each, N per m of coordinate error.
+pub(crate) struct GradientPass<'a> {
+    pub(crate) curves: &'a Curves,
+    pub(crate) x: &'a [f64],
+    pub(crate) gradient: &'a mut [f64],
+    /// Per node: Σ over elements of the force's size, N.
+    pub(crate) magnitude: &'a mut [f64],
+    /// Per node: Σ A σ′|∇ε|², the stiffness through which an error of position becomes a force, N/m.
+    pub(crate) stiffness: &'a mut [f64],
+    pub(crate) energy: f64,
+}
+
+impl Pass for GradientPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        _part: usize,
+        elements: &[E],
+    ) {
+        for element in elements {
+            let (nodes, components, area) = (element.nodes(), element.components(), element.area());
+            let x = gather(nodes, self.x);
+            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            let mut force = [Point::<N>::zeros(); K];
+            for c in 0..S {
+                let Some(curve) = self.curves.get(components[c]) else { continue };
+                let response = curve.response(strains[c]);
+                self.energy += area * curve.energy(strains[c]);
+                for a in 0..K {
+                    force[a] += area * response.stress * gradients[c][a];
+                    self.stiffness[nodes[a]] +=
+                        area * response.tangent.abs() * gradients[c][a].norm_squared();
+                }
+            }
+            for a in 0..K {
+                self.magnitude[nodes[a]] += force[a].norm();
+                for i in 0..N {
+                    self.gradient[3 * nodes[a] + i] += force[a][i];
+                }
+            }
+        }
+    }
+}
+
+/// Σ Hessians, scattered through precomputed targets.
+pub(crate) struct HessianPass<'a> {
+    pub(crate) curves: &'a Curves,
+    pub(crate) x: &'a [f64],
+    pub(crate) curvature: Curvature<'a>,
+    /// Per part: where each lower entry of each element goes, in the order of [`lower_entries`].
+    pub(crate) targets: [&'a [u32]; 2],
+    pub(crate) values: &'a mut [f64],
+}
+
+impl Pass for HessianPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        part: usize,
+        elements: &[E],
+    ) {
+        let mut targets = self.targets[part].iter();
+        for (index, element) in elements.iter().enumerate() {
+            let (components, area) = (element.components(), element.area());
+            let x = gather(element.nodes(), self.x);
+            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            // The mixed strains belong to the membrane: a hinge uses its own stress.
+            let geometric_strains: [f64; S] = match self.curvature {
+                Curvature::Mixed(mixed) if part == 0 => std::array::from_fn(|c| mixed[S * index + c]),
+                _ => strains,
+            };
+            let (mut stress, mut tangent) = ([0.0; S], [0.0; S]);
+            for c in 0..S {
+                if let Some(curve) = self.curves.get(components[c]) {
+                    tangent[c] = area * curve.response(strains[c]).tangent;
+                    stress[c] = area * curve.stress(geometric_strains[c]);
+                }
+            }
+            let mut blocks = match self.curvature {
+                Curvature::Clamped => element.geometric_clamped(&x, &stress),
+                _ => element.geometric(&x, &stress),
+            };
+            for c in 0..S {
+                for a in 0..K {
+                    let scaled = gradients[c][a] * tangent[c];
+                    for b in 0..=a {
+                        blocks[a][b].ger(1.0, &scaled, &gradients[c][b], 1.0);
+                    }
+                }
+            }
+            for a in 0..K {
+                for b in 0..=a {
+                    for j in 0..N {
+                        for i in if a == b { j } else { 0 }..N {
+                            if let Some(&target) = targets.next() {
+                                self.values[target as usize] += blocks[a][b][(i, j)];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The entries of an element's Hessian that are scattered, as (node, coordinate) pairs: the order of the targets.
+pub(crate) fn lower_entries(nodes: usize, coordinates: usize) -> Vec<[(usize, usize); 2]> {
+    let mut entries = Vec::new();
+    for a in 0..nodes {
+        for b in 0..=a {
+            for j in 0..coordinates {
+                for i in if a == b { j } else { 0 }..coordinates {
+                    entries.push([(a, i), (b, j)]);
+                }
+            }
+        }
+    }
+    entries
+}
+
+/// Derivative of the gradient with respect to one component's control values: one column of 3 × nodes a control point.
+pub(crate) struct ParameterPass<'a> {
+    pub(crate) curves: &'a Curves,
+    pub(crate) x: &'a [f64],
+    pub(crate) component: Component,
+    pub(crate) weights: &'a mut [f64],
+    pub(crate) columns: &'a mut [f64],
+}
+
+impl Pass for ParameterPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        _part: usize,
+        elements: &[E],
+    ) {
+        let Some(curve) = self.curves.get(self.component) else { return };
+        for element in elements {
+            let (nodes, components) = (element.nodes(), element.components());
+            if !components.contains(&self.component) {
+                continue;
+            }
+            let x = gather(nodes, self.x);
+            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            for c in (0..S).filter(|&c| components[c] == self.component) {
+                curve.weights(strains[c], self.weights);
+                for (weight, column) in self.weights.iter().zip(self.columns.chunks_exact_mut(self.x.len())) {
+                    for a in 0..K {
+                        let force = element.area() * weight * gradients[c][a];
+                        for i in 0..N {
+                            column[3 * nodes[a] + i] += force[i];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The membrane's strains to first order after a step: ε(x) + ∇ε(x)·Δx, `S` an element.
+pub(crate) struct PredictedStrainPass<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) step: &'a [f64],
+    pub(crate) strains: &'a mut Vec<f64>,
+}
+
+impl Pass for PredictedStrainPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        part: usize,
+        elements: &[E],
+    ) {
+        if part != 0 {
+            return;
+        }
+        self.strains.clear();
+        for element in elements {
+            let nodes = element.nodes();
+            let (x, step) = (gather::<K, N>(nodes, self.x), gather::<K, N>(nodes, self.step));
+            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            self.strains.extend(
+                (0..S).map(|c| strains[c] + (0..K).map(|a| gradients[c][a].dot(&step[a])).sum::<f64>()),
+            );
+        }
+    }
+}
+
+/// All strains of one component, each with the area it stands for.
+pub(crate) struct StrainPass<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) component: Component,
+    pub(crate) strains: Vec<[f64; 2]>,
+}
+
+impl Pass for StrainPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        _part: usize,
+        elements: &[E],
+    ) {
+        for element in elements {
+            let components = element.components();
+            if components.contains(&self.component) {
+                let strains = element.strains(&gather(element.nodes(), self.x));
+                for c in (0..S).filter(|&c| components[c] == self.component) {
+                    self.strains.push([strains[c], element.area()]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,451 @@
+//! Quasi-static equilibrium: the state in which the gradient of the total energy vanishes at every free node.
+//!
+//! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
+//! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
+//! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
+//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort.
+//!
+//! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
+
+use crate::cloth::{Cloth, ForceScale};
+use crate::element::Curvature;
+use crate::linear::Factor;
+use crate::material::{Component, Curves};
+use nalgebra::Vector3;
+
+/// How equilibria are found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// The method; default mixed Newton.
+    pub method: Method,
+    /// When a state counts as balanced.
+    pub tolerance: Tolerance,
+    /// Most iterations of one solve; default 200.
+    pub max_iterations: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { method: Method::MixedNewton, tolerance: Tolerance::Relative(1e-6), max_iterations: 200 }
+    }
+}
+
+/// The iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Mixed Newton, Levenberg–Marquardt if that comes to nothing.
+    MixedNewton,
+    /// The full Hessian + μI throughout, as published.
+    LevenbergMarquardt,
+}
+
+/// When a state counts as balanced.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// Largest imbalance of a node at most this share of the typical force or weight at a node.
+    Relative(f64),
+    /// Norm of all imbalances at most this, N; 10 µN as published.
+    Absolute(f64),
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// A stable equilibrium.
+    Converged,
+    /// Balanced, but the stiffness matrix is not positive definite: the cloth would leave this state at a touch.
+    Unstable,
+    /// The iterations ran out.
+    IterationLimit,
+    /// No step made it better.
+    Stalled,
+    /// The start, or the curves there, are not finite.
+    NotFinite,
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Converged => "converged",
+            Self::Unstable => "balanced but unstable",
+            Self::IterationLimit => "the iterations ran out",
+            Self::Stalled => "no step made the imbalance smaller",
+            Self::NotFinite => "the start is not finite",
+        })
+    }
+}
+
+/// What decided that a state is balanced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// The tolerance asked for.
+    Tolerance,
+    /// Rounding: forces cannot be computed more exactly at these coordinates.
+    Rounding,
+}
+
+/// The outcome of a solve.
+#[must_use]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equilibrium {
+    /// How it ended.
+    pub status: Status,
+    /// Which limit the imbalance is measured against.
+    pub limit: Limit,
+    /// Total energy, J.
+    pub energy: f64,
+    /// Largest imbalance of a free node, N (with an absolute tolerance: the norm over all).
+    pub imbalance: f64,
+    /// What it had to come below, N.
+    pub tolerance: f64,
+    /// Newton steps taken.
+    pub iterations: usize,
+    /// Factorisations made, the one that checks stability included.
+    pub factorisations: usize,
+}
+
+impl Equilibrium {
+    /// A stable equilibrium was found.
+    pub fn converged(&self) -> bool {
+        self.status == Status::Converged
+    }
+}
+
+/// An energy may rise by this many times |g·d| in a full step: the mixed matrix overshoots stretch on purpose and takes
+/// it back in the next step.
+const NONMONOTONE: f64 = 20.0;
+
+/// After so many steps the energy must fall in each: no cycling.
+const NONMONOTONE_STEPS: usize = 40;
+
+/// The memory that finding equilibria of one cloth needs. One a thread.
+pub struct Solver<'a> {
+    cloth: &'a Cloth,
+    factor: Factor,
+    values: Vec<f64>,
+    gradient: Vec<f64>,
+    scale: ForceScale,
+    step: Vec<f64>,
+    trial: Vec<f64>,
+    trial_gradient: Vec<f64>,
+    trial_scale: ForceScale,
+    reduced: Vec<f64>,
+    mixed: Vec<f64>,
+}
+
+impl<'a> Solver<'a> {
+    /// Memory for one cloth.
+    pub fn new(cloth: &'a Cloth) -> Self {
+        let coordinates = 3 * cloth.nodes();
+        Self {
+            cloth,
+            factor: Factor::new(cloth.pattern()),
+            values: Vec::new(),
+            gradient: vec![0.0; coordinates],
+            scale: ForceScale::new(cloth.nodes()),
+            step: vec![0.0; coordinates],
+            trial: vec![0.0; coordinates],
+            trial_gradient: vec![0.0; coordinates],
+            trial_scale: ForceScale::new(cloth.nodes()),
+            reduced: vec![0.0; cloth.unknowns()],
+            mixed: Vec::new(),
+        }
+    }
+
+    /// Finds an equilibrium near a state, which it replaces.
+    ///
+    /// * `x` — 3 stacked coordinates a node, m; held nodes at their prescribed places, where they stay
+    ///
+    /// On return [`Solver::solve_linear`] works with the true stiffness matrix there (where that is not positive
+    /// definite: shifted until it is).
+    ///
+    /// # Panics
+    /// If `x` has another length than the cloth has coordinates.
+    pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
+        assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
+        let before = self.factor.count;
+        let mut iterations = 0;
+        let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        let mut status = if energy.is_finite() { Status::Stalled } else { Status::NotFinite };
+        if status != Status::NotFinite && settings.method == Method::MixedNewton {
+            // A step is saved for the last resort.
+            status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
+        }
+        if matches!(status, Status::Stalled | Status::IterationLimit) {
+            status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
+        }
+        if status != Status::NotFinite {
+            let stable = self.factorise_true_hessian(curves, x);
+            if status == Status::Converged && !stable {
+                status = Status::Unstable;
+            }
+        }
+        let (imbalance, tolerance, limit) = self.balance(x, settings);
+        Equilibrium {
+            status,
+            limit,
+            energy,
+            imbalance,
+            tolerance,
+            iterations,
+            factorisations: self.factor.count - before,
+        }
+    }
+
+    /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
+    /// solve, over the cloth's unknowns.
+    pub fn solve_linear(&mut self, columns: &mut [f64]) {
+        self.factor.solve(self.cloth.pattern(), columns);
+    }
+
+    /// Derivative of the clips' forces ([`Solver::clip_forces`]) with respect to the unknowns, N/m: 3 × clips rows.
+    pub fn border(&self) -> &[f64] {
+        let start = self.cloth.entries();
+        &self.values[start..self.values.len() - 1]
+    }
+
+    /// The force that holds each clip at the last solve's state, N, apart from the clip's own weight.
+    pub fn clip_forces(&self) -> Vec<Vector3<f64>> {
+        self.cloth.clip_forces(&self.gradient)
+    }
+
+    /// The gradient at the last solve's state, N, 3 a node.
+    pub fn gradient(&self) -> &[f64] {
+        &self.gradient
+    }
+
+    /// See [`Cloth::parameter_gradient`].
+    pub fn parameter_gradient(
+        &self,
+        curves: &Curves,
+        component: Component,
+        x: &[f64],
+        columns: &mut Vec<f64>,
+    ) {
+        self.cloth.parameter_gradient(curves, component, x, columns);
+    }
+
+    /// The imbalance, what it must come below, and by which limit.
+    ///
+    /// Rounding: coordinates are known to an ulp, and an error δ of position is an error K δ of force; forces sum with
+    /// errors of an ulp of their own. A hundred of both are allowed for.
+    fn balance(&self, x: &[f64], settings: &Settings) -> (f64, f64, Limit) {
+        let cloth = self.cloth;
+        let size = x.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+        let mut rounding: f64 = 0.0;
+        let (mut largest, mut total, mut typical) = (0.0f64, 0.0, 0.0);
+        let mut nodes = 0;
+        let mut last = usize::MAX;
+        for &coordinate in cloth.unknown_coordinates() {
+            let node = coordinate / 3;
+            if node == last {
+                continue;
+            }
+            last = node;
+            let force = Vector3::from_column_slice(&self.gradient[3 * node..3 * node + 3]);
+            let force = if cloth.is_planar() { Vector3::new(force.x, force.y, 0.0) } else { force };
+            largest = largest.max(force.norm());
+            total += force.norm_squared();
+            typical += self.scale.magnitude[node].max(cloth.weight(node));
+            nodes += 1;
+            let error = self.scale.stiffness[node] * size + self.scale.magnitude[node];
+            rounding = rounding.max(100.0 * f64::EPSILON * error);
+        }
+        let (imbalance, asked) = match settings.tolerance {
+            Tolerance::Relative(share) => (largest, share * typical / f64::from(nodes.max(1))),
+            Tolerance::Absolute(limit) => (total.sqrt(), limit),
+        };
+        if asked >= rounding {
+            (imbalance, asked, Limit::Tolerance)
+        } else {
+            (imbalance, rounding, Limit::Rounding)
+        }
+    }
+
+    fn is_balanced(&self, x: &[f64], settings: &Settings) -> bool {
+        let (imbalance, tolerance, _) = self.balance(x, settings);
+        imbalance <= tolerance
+    }
+
+    fn mixed_newton(
+        &mut self,
+        curves: &Curves,
+        x: &mut [f64],
+        settings: &Settings,
+        energy: &mut f64,
+        iterations: &mut usize,
+    ) -> Status {
+        self.mixed.clear();
+        while *iterations < settings.max_iterations / 2 {
+            if self.is_balanced(x, settings) {
+                return Status::Converged;
+            }
+            if !self.factorise_newton(curves, x) {
+                return Status::Stalled;
+            }
+            let slope = self.direction();
+            let nonmonotone = *iterations < NONMONOTONE_STEPS;
+            *iterations += 1;
+            if !self.line_search(curves, x, energy, slope, nonmonotone) {
+                return Status::Stalled;
+            }
+        }
+        Status::IterationLimit
+    }
+
+    /// The mixed matrix; where it is not positive definite, the clamped one.
+    fn factorise_newton(&mut self, curves: &Curves, x: &[f64]) -> bool {
+        let mixed = if self.mixed.is_empty() { Curvature::Full } else { Curvature::Mixed(&self.mixed) };
+        self.cloth.hessian(curves, x, mixed, &mut self.values);
+        if self.factorise(0.0) {
+            return true;
+        }
+        self.cloth.hessian(curves, x, Curvature::Clamped, &mut self.values);
+        // A clamped matrix may still be singular, as where nothing but bending holds a flat sheet.
+        self.factorise(0.0) || self.factorise_shifted()
+    }
+
+    fn factorise_true_hessian(&mut self, curves: &Curves, x: &[f64]) -> bool {
+        self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+        let stable = self.factorise(0.0);
+        if !stable {
+            self.factorise_shifted();
+        }
+        stable
+    }
+
+    /// Adds μ to the diagonal, ten times more each time, until the matrix is positive definite.
+    fn factorise_shifted(&mut self) -> bool {
+        let mean = self.mean_diagonal();
+        (0..16).any(|power| self.factorise(mean * 1e-9 * 10f64.powi(power)))
+    }
+
+    fn mean_diagonal(&self) -> f64 {
+        let diagonal = self.cloth.diagonal();
+        diagonal.iter().map(|&place| self.values[place].abs()).sum::<f64>() / diagonal.len().max(1) as f64
+    }
+
+    /// Factorises the assembled matrix + μI.
+    fn factorise(&mut self, shift: f64) -> bool {
+        let diagonal = self.cloth.diagonal();
+        diagonal.iter().for_each(|&place| self.values[place] += shift);
+        let made = self.factor.factorise(self.cloth.pattern(), &self.values[..self.cloth.entries()]);
+        diagonal.iter().for_each(|&place| self.values[place] -= shift);
+        made.is_ok()
+    }
+
+    /// d = −K⁻¹ g into `step`; returns g·d.
+    fn direction(&mut self) -> f64 {
+        let unknowns = self.cloth.unknown_coordinates();
+        for (value, &coordinate) in self.reduced.iter_mut().zip(unknowns) {
+            *value = -self.gradient[coordinate];
+        }
+        self.factor.solve(self.cloth.pattern(), &mut self.reduced);
+        self.step.fill(0.0);
+        let mut slope = 0.0;
+        for (value, &coordinate) in self.reduced.iter().zip(unknowns) {
+            self.step[coordinate] = *value;
+            slope += value * self.gradient[coordinate];
+        }
+        slope
+    }
+
+    /// Moves along the step, halved until it is acceptable.
+    fn line_search(
+        &mut self,
+        curves: &Curves,
+        x: &mut [f64],
+        energy: &mut f64,
+        slope: f64,
+        nonmonotone: bool,
+    ) -> bool {
+        if !(slope < 0.0) {
+            return false;
+        }
+        let norm = norm_of(&self.gradient, self.cloth);
+        let mut length = 1.0;
+        for halving in 0..30 {
+            let trial_energy = self.try_step(curves, x, length);
+            let acceptable = if halving == 0 && nonmonotone {
+                trial_energy <= *energy + NONMONOTONE * slope.abs()
+            } else {
+                trial_energy <= *energy + 1e-4 * length * slope
+            };
+            // Near the end energy differences drown in rounding: the residual decides.
+            let smaller = || norm_of(&self.trial_gradient, self.cloth) < 0.5 * norm;
+            if trial_energy.is_finite()
+                && (acceptable || smaller())
+                && !self.cloth.hinge_jumps(x, &self.trial)
+            {
+                self.step.iter_mut().for_each(|d| *d *= length);
+                self.cloth.predicted_strains(x, &self.step, &mut self.mixed);
+                *energy = self.accept(x, trial_energy);
+                return true;
+            }
+            length *= 0.5;
+        }
+        false
+    }
+
+    /// Energy after a share of the step; the state and its gradient stay in `trial`.
+    fn try_step(&mut self, curves: &Curves, x: &[f64], length: f64) -> f64 {
+        for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.step) {
+            *trial = x + length * d;
+        }
+        self.cloth.gradient(curves, &self.trial, &mut self.trial_gradient, &mut self.trial_scale)
+    }
+
+    fn accept(&mut self, x: &mut [f64], energy: f64) -> f64 {
+        x.copy_from_slice(&self.trial);
+        std::mem::swap(&mut self.gradient, &mut self.trial_gradient);
+        std::mem::swap(&mut self.scale, &mut self.trial_scale);
+        energy
+    }
+
+    /// (K + μI) d = −g with μ a tenth after each success, ten times after each failure.
+    fn levenberg_marquardt(
+        &mut self,
+        curves: &Curves,
+        x: &mut [f64],
+        settings: &Settings,
+        energy: &mut f64,
+        iterations: &mut usize,
+    ) -> Status {
+        let mut shift = None;
+        while *iterations < settings.max_iterations {
+            if self.is_balanced(x, settings) {
+                return Status::Converged;
+            }
+            self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+            let mean = self.mean_diagonal();
+            let mut damping = shift.unwrap_or(1e-3 * mean);
+            let norm = norm_of(&self.gradient, self.cloth);
+            *iterations += 1;
+            loop {
+                if damping > 1e9 * mean {
+                    return Status::Stalled;
+                }
+                if self.factorise(damping) {
+                    self.direction();
+                    let trial_energy = self.try_step(curves, x, 1.0);
+                    let smaller = norm_of(&self.trial_gradient, self.cloth) < 0.5 * norm;
+                    if trial_energy.is_finite()
+                        && (trial_energy < *energy || smaller)
+                        && !self.cloth.hinge_jumps(x, &self.trial)
+                    {
+                        *energy = self.accept(x, trial_energy);
+                        break;
+                    }
+                }
+                damping *= 10.0;
+            }
+            shift = Some(0.1 * damping);
+        }
+        if self.is_balanced(x, settings) { Status::Converged } else { Status::IterationLimit }
+    }
+}
+
+/// Norm of the gradient over the unknowns.
+fn norm_of(gradient: &[f64], cloth: &Cloth) -> f64 {
+    cloth.unknown_coordinates().iter().map(|&c| gradient[c] * gradient[c]).sum::<f64>().sqrt()
+}

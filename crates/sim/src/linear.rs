@@ -1,0 +1,222 @@
+//! Sparse symmetric systems: ordering, Cholesky factorisation, solution. The only file that names faer.
+//!
+//! The symbolic factorisation is made once for a pattern, the numeric one at every step, into memory that is kept.
+//! Everything runs on the calling thread: cloth this small gains from many frames at once, not from a parallel factor.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::amd;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side, Spec};
+
+/// Order of the nodes of a graph that keeps the factor sparse (approximate minimum degree).
+///
+/// * `neighbours` — of every node, ascending, without itself
+/// * returns — node at each place
+pub(crate) fn order(neighbours: &[Vec<usize>]) -> Vec<usize> {
+    let size = neighbours.len();
+    let pattern = pattern(neighbours);
+    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(size, pattern.compute_nnz()));
+    let (mut order, mut place) = (vec![0; size], vec![0; size]);
+    match amd::order(
+        &mut order,
+        &mut place,
+        pattern.as_ref(),
+        amd::Control::default(),
+        MemStack::new(&mut memory),
+    ) {
+        Ok(_) => order,
+        // Any order is right, only slower.
+        Err(_) => (0..size).collect(),
+    }
+}
+
+fn pattern(columns: &[Vec<usize>]) -> SymbolicSparseColMat<usize> {
+    let mut starts = vec![0];
+    starts.extend(columns.iter().scan(0, |sum, column| {
+        *sum += column.len();
+        Some(*sum)
+    }));
+    SymbolicSparseColMat::new_checked(columns.len(), columns.len(), starts, None, columns.concat())
+}
+
+/// The lower triangle of a symmetric sparse matrix, column by column, and the symbolic part of its factorisation.
+#[derive(Debug)]
+pub(crate) struct Pattern {
+    lower: SymbolicSparseColMat<usize>,
+    symbolic: SymbolicCholesky<usize>,
+}
+
+impl Pattern {
+    /// * `columns` — row indices ≥ the column's own, ascending, the diagonal first
+    ///
+    /// `None` if memory does not suffice.
+    pub(crate) fn new(columns: &[Vec<usize>]) -> Option<Self> {
+        let lower = pattern(columns);
+        // With the identity ordering this version reads the upper triangle only, whatever side it is told.
+        let mut upper = vec![Vec::new(); columns.len()];
+        for (column, rows) in columns.iter().enumerate() {
+            rows.iter().for_each(|&row| upper[row].push(column));
+        }
+        let symbolic = factorize_symbolic_cholesky(
+            pattern(&upper).as_ref(),
+            Side::Upper,
+            SymmetricOrdering::Identity,
+            CholeskySymbolicParams::default(),
+        );
+        Some(Self { lower, symbolic: symbolic.ok()? })
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn size(&self) -> usize {
+        self.lower.ncols()
+    }
+
+    /// Number of stored entries.
+    pub(crate) fn entries(&self) -> usize {
+        self.lower.compute_nnz()
+    }
+
+    /// Numbers in the factor.
+    pub(crate) fn factor_entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// Where an entry of the lower triangle is stored.
+    pub(crate) fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let range = self.lower.col_range(column);
+        let found = self.lower.row_idx()[range.clone()].binary_search(&row).ok()?;
+        Some(range.start + found)
+    }
+
+    fn as_ref(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        self.lower.as_ref()
+    }
+}
+
+/// The numeric part of a factorisation, with all the memory it needs.
+pub(crate) struct Factor {
+    values: Vec<f64>,
+    memory: MemBuffer,
+    /// How many factorisations were made.
+    pub(crate) count: usize,
+}
+
+/// The matrix has a pivot that is not positive, or an entry that is not finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct NotPositiveDefinite;
+
+impl Factor {
+    pub(crate) fn new(pattern: &Pattern) -> Self {
+        let request = pattern.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
+        Self {
+            values: vec![0.0; pattern.symbolic.len_val()],
+            memory: MemBuffer::new(request.or(pattern.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq))),
+            count: 0,
+        }
+    }
+
+    /// Factorises the matrix with these lower entries.
+    pub(crate) fn factorise(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
+        self.count += 1;
+        // A NaN would come back as a factor full of NaN, and as success.
+        if !lower.iter().all(|value| value.is_finite()) {
+            return Err(NotPositiveDefinite);
+        }
+        let matrix = SparseColMatRef::new(pattern.as_ref(), lower);
+        pattern
+            .symbolic
+            .factorize_numeric_llt(
+                &mut self.values,
+                matrix,
+                Side::Lower,
+                LltRegularization::default(),
+                Par::Seq,
+                MemStack::new(&mut self.memory),
+                Spec::default(),
+            )
+            .map(|_| ())
+            .map_err(|_| NotPositiveDefinite)
+    }
+
+    /// Solves for as many right-hand sides as are stacked in `columns`, in place.
+    pub(crate) fn solve(&mut self, pattern: &Pattern, columns: &mut [f64]) {
+        let size = pattern.size();
+        if size == 0 {
+            return;
+        }
+        let sides = columns.len() / size;
+        let request = pattern.symbolic.solve_in_place_scratch::<f64>(sides, Par::Seq);
+        let mut larger;
+        // Several right-hand sides at once are rare (once a frame): only they get memory of their own.
+        let memory = if sides > 1 {
+            larger = MemBuffer::new(request);
+            &mut larger
+        } else {
+            &mut self.memory
+        };
+        LltRef::new(&pattern.symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(columns, size, sides),
+            Par::Seq,
+            MemStack::new(memory),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The path graph's Laplacian plus one.
+    fn chain(size: usize) -> (Pattern, Vec<f64>) {
+        let columns: Vec<Vec<usize>> = (0..size).map(|i| (i..(i + 2).min(size)).collect()).collect();
+        let pattern = Pattern::new(&columns).unwrap();
+        let values =
+            columns.iter().flatten().zip(columns.iter().enumerate().flat_map(|(i, c)| vec![i; c.len()]));
+        let values = values.map(|(&row, column)| if row == column { 3.0 } else { -1.0 }).collect();
+        (pattern, values)
+    }
+
+    #[test]
+    fn solves_several_right_hand_sides() {
+        let (pattern, values) = chain(50);
+        let mut factor = Factor::new(&pattern);
+        factor.factorise(&pattern, &values).unwrap();
+        let exact: Vec<f64> = (0..150).map(|i| (i as f64).sin()).collect();
+        let mut sides: Vec<f64> = exact
+            .chunks(50)
+            .flat_map(|x| {
+                (0..50).map(|i| {
+                    3.0 * x[i] - if i > 0 { x[i - 1] } else { 0.0 } - if i < 49 { x[i + 1] } else { 0.0 }
+                })
+            })
+            .collect();
+        factor.solve(&pattern, &mut sides);
+        assert!(sides.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-14));
+    }
+
+    #[test]
+    fn says_when_a_matrix_is_not_positive_definite() {
+        let (pattern, mut values) = chain(50);
+        let mut factor = Factor::new(&pattern);
+        values[20] = -3.0;
+        assert!(factor.factorise(&pattern, &values).is_err());
+        values[20] = f64::NAN;
+        assert!(factor.factorise(&pattern, &values).is_err());
+        assert_eq!(factor.count, 2);
+    }
+
+    #[test]
+    fn an_order_is_a_permutation() {
+        let neighbours: Vec<Vec<usize>> = (0..9usize)
+            .map(|i| [i.checked_sub(1), (i < 8).then_some(i + 1)].into_iter().flatten().collect())
+            .collect();
+        let mut sorted = order(&neighbours);
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..9).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,134 @@
+//! Which model, which curves: all that a simulator must know of a fabric, and nothing of any mesh.
+
+use crate::curve::{NegativeStrain, StiffnessCurve};
+use serde::{Deserialize, Serialize};
+
+/// A complete cloth model: a membrane and the bending that goes with it (Miguel et al. 2012, §6).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// Diagonalised St. Venant–Kirchhoff membrane, discrete shells.
+    Stvk,
+    /// Soft constraints of Baraff and Witkin, discrete shells.
+    SoftConstraint,
+    /// Springs in the sheet and ring-2 springs against bending.
+    Springs,
+}
+
+impl Model {
+    /// All models.
+    pub const ALL: [Self; 3] = [Self::Stvk, Self::SoftConstraint, Self::Springs];
+
+    /// How a component's curve is read at negative strain.
+    pub fn negative_strain(self, component: Component, compression: Compression) -> NegativeStrain {
+        match (component.is_stretch(), compression, self) {
+            (false, ..) => NegativeStrain::Odd,
+            (true, Compression::None, _) => NegativeStrain::Slack,
+            (true, Compression::ZeroStrain, Self::Stvk) => NegativeStrain::Green,
+            (true, Compression::ZeroStrain, _) => NegativeStrain::Linear,
+        }
+    }
+}
+
+impl std::fmt::Display for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Stvk => "stvk",
+            Self::SoftConstraint => "soft-constraint",
+            Self::Springs => "springs",
+        })
+    }
+}
+
+/// What weft and warp do under compression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Compression {
+    /// Push back with the stiffness at zero strain.
+    #[default]
+    ZeroStrain,
+    /// Bear tension only.
+    None,
+}
+
+/// One of the six strain components; each has its own curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Component {
+    /// Stretch along weft.
+    StretchWeft,
+    /// Stretch along warp.
+    StretchWarp,
+    /// Shear between the yarns.
+    Shear,
+    /// Bending along weft.
+    BendWeft,
+    /// Bending along warp.
+    BendWarp,
+    /// Bending along neither.
+    BendDiagonal,
+}
+
+impl Component {
+    /// All components, in the order in which they index [`Curves`].
+    pub const ALL: [Self; 6] = [
+        Self::StretchWeft,
+        Self::StretchWarp,
+        Self::Shear,
+        Self::BendWeft,
+        Self::BendWarp,
+        Self::BendDiagonal,
+    ];
+
+    /// Weft or warp stretch.
+    pub fn is_stretch(self) -> bool {
+        matches!(self, Self::StretchWeft | Self::StretchWarp)
+    }
+
+    /// One of the three bending components.
+    pub fn is_bending(self) -> bool {
+        matches!(self, Self::BendWeft | Self::BendWarp | Self::BendDiagonal)
+    }
+}
+
+impl std::fmt::Display for Component {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::StretchWeft => "stretch-weft",
+            Self::StretchWarp => "stretch-warp",
+            Self::Shear => "shear",
+            Self::BendWeft => "bend-weft",
+            Self::BendWarp => "bend-warp",
+            Self::BendDiagonal => "bend-diagonal",
+        })
+    }
+}
+
+/// Up to six curves, one a component. A component without a curve stores no energy.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curves([Option<StiffnessCurve>; 6]);
+
+impl Curves {
+    /// The curve of a component.
+    pub fn get(&self, component: Component) -> Option<&StiffnessCurve> {
+        self.0[component as usize].as_ref()
+    }
+
+    /// Sets the curve of a component.
+    pub fn set(&mut self, component: Component, curve: StiffnessCurve) {
+        self.0[component as usize] = Some(curve);
+    }
+
+    /// The components that have a curve.
+    pub fn components(&self) -> impl Iterator<Item = Component> + '_ {
+        Component::ALL.into_iter().filter(|&component| self.get(component).is_some())
+    }
+}
+
+impl FromIterator<(Component, StiffnessCurve)> for Curves {
+    fn from_iter<I: IntoIterator<Item = (Component, StiffnessCurve)>>(curves: I) -> Self {
+        let mut result = Self::default();
+        curves.into_iter().for_each(|(component, curve)| result.set(component, curve));
+        result
+    }
+}

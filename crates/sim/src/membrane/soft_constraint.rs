@@ -1,0 +1,86 @@
+//! Soft-constraint triangles: change of length instead of Green strain.
+
+use super::Triangle;
+use super::stvk::{TRIANGLE_COMPONENTS, scalar_blocks};
+use crate::element::{Block, Element, Point};
+use crate::material::Component;
+
+/// A triangle whose stretch strains are changes of length.
+///
+/// ```text
+/// ε_u = |w_u| − 1     ε_v = |w_v| − 1     ε_uv = w_u·w_v
+/// ∂ε_u/∂x_a = r_u,a n      ∂²ε_u/∂x_a∂x_b = r_u,a r_u,b (I − n nᵀ)/|w_u|      n = w_u/|w_u|
+/// ```
+///
+/// Source: Miguel et al. 2012, eq. 4; Baraff and Witkin 1998.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoftTriangle(pub Triangle);
+
+/// |w| as √(|w|² + δ²): the same bits at rest, finite derivatives at collapse.
+const SMALLEST_STRETCH: f64 = 1e-8;
+
+fn length<const N: usize>(w: &Point<N>) -> f64 {
+    (w.norm_squared() + SMALLEST_STRETCH * SMALLEST_STRETCH).sqrt()
+}
+
+impl SoftTriangle {
+    fn blocks<const N: usize>(
+        &self,
+        x: &[Point<N>; 3],
+        stretch: [f64; 2],
+        shear: [f64; 3],
+    ) -> [[Block<N>; 3]; 3] {
+        let mut blocks = scalar_blocks(&self.0, &shear);
+        let weights = [&self.0.weft, &self.0.warp];
+        for ((w, stress), r) in self.0.deformation(x).iter().zip(stretch).zip(weights) {
+            let length = length(w);
+            let normal = w / length;
+            let across = (Block::identity() - normal * normal.transpose()) * (stress / length);
+            for a in 0..3 {
+                for b in 0..=a {
+                    blocks[a][b] += across * (r[a] * r[b]);
+                }
+            }
+        }
+        blocks
+    }
+}
+
+impl<const N: usize> Element<3, N, 3> for SoftTriangle {
+    fn nodes(&self) -> [usize; 3] {
+        self.0.nodes
+    }
+
+    fn components(&self) -> [Component; 3] {
+        TRIANGLE_COMPONENTS
+    }
+
+    fn area(&self) -> f64 {
+        self.0.area
+    }
+
+    fn strains(&self, x: &[Point<N>; 3]) -> [f64; 3] {
+        let [w_u, w_v] = self.0.deformation(x);
+        [length(&w_u) - 1.0, length(&w_v) - 1.0, w_u.dot(&w_v)]
+    }
+
+    fn gradients(&self, x: &[Point<N>; 3]) -> [[Point<N>; 3]; 3] {
+        let [w_u, w_v] = self.0.deformation(x);
+        let [n_u, n_v] = [w_u / length(&w_u), w_v / length(&w_v)];
+        [
+            self.0.weft.map(|r| n_u * r),
+            self.0.warp.map(|r| n_v * r),
+            std::array::from_fn(|a| w_v * self.0.weft[a] + w_u * self.0.warp[a]),
+        ]
+    }
+
+    fn geometric(&self, x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3]) -> [[Block<N>; 3]; 3] {
+        self.blocks(x, [s_u, s_v], [0.0, 0.0, s_uv])
+    }
+
+    /// Compression is dropped; of the shear, whose eigenvalues are ±σ_uv, the positive one stays.
+    fn geometric_clamped(&self, x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3]) -> [[Block<N>; 3]; 3] {
+        let half = 0.5 * s_uv.abs();
+        self.blocks(x, [s_u.max(0.0), s_v.max(0.0)], [half, half, 0.5 * s_uv])
+    }
+}

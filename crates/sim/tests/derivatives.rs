@@ -1,0 +1,229 @@
+//! Every element against finite differences, rigid motions, and itself clamped.
+//!
+//! ```text
+//! goal    ∇ε and ∇²ε of every element are those of its strain, in any state short of collapse
+//! states  a rest shape about 4 mm large, stretched, compressed, sheared or folded at random, turned and moved
+//! passes  gradient 1e-6, Hessian 1e-5 relative; forces unchanged by a rigid motion to 1e-9
+//! ```
+//!
+//! The seeded states number 2 000 an element here; `full_count` (ignored) runs 1e5.
+
+use cloth_sim::bending::Hinge;
+use cloth_sim::element::{Element, Point};
+use cloth_sim::finite_difference::derivative_error;
+use cloth_sim::material::Component;
+use cloth_sim::membrane::{SoftTriangle, Spring, StvkTriangle, Triangle};
+use nalgebra::{Rotation3, SMatrix, Vector2, Vector3};
+use rand::{Rng, SeedableRng, rngs::StdRng};
+
+const CELL: f64 = 4e-3;
+
+/// Largest relative errors over many states: gradient, Hessian, and force change under a rigid motion.
+#[derive(Debug, Default)]
+struct Errors {
+    gradient: f64,
+    hessian: f64,
+    rigid: f64,
+    /// Most negative eigenvalue of the clamped part, relative to the largest.
+    clamped: f64,
+}
+
+fn stack<const K: usize, const N: usize>(x: &[f64]) -> [Point<N>; K] {
+    std::array::from_fn(|a| Point::from_column_slice(&x[N * a..N * a + N]))
+}
+
+fn flatten<const K: usize, const N: usize, const S: usize>(gradients: &[[Point<N>; K]; S]) -> Vec<f64> {
+    gradients.iter().flatten().flat_map(|g| g.iter().copied().collect::<Vec<_>>()).collect()
+}
+
+/// Full symmetric matrix from the lower blocks.
+fn dense<const K: usize, const N: usize>(blocks: &[[SMatrix<f64, N, N>; K]; K]) -> nalgebra::DMatrix<f64> {
+    nalgebra::DMatrix::from_fn(N * K, N * K, |i, j| {
+        let (a, b) = (i / N, j / N);
+        if b <= a { blocks[a][b][(i % N, j % N)] } else { blocks[b][a][(j % N, i % N)] }
+    })
+}
+
+fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+    element: &E,
+    x: &[f64],
+    rng: &mut StdRng,
+    errors: &mut Errors,
+) {
+    let strains = |x: &[f64]| element.strains(&stack::<K, N>(x)).to_vec();
+    let gradients = |x: &[f64]| flatten(&element.gradients(&stack::<K, N>(x)));
+    // A hundredth of the smallest distance: derivatives of an angle grow as the wing shrinks.
+    let size = smallest_distance::<K, N>(x);
+    let h = 1e-3 * size;
+    let gradient = gradients(x);
+    errors.gradient = errors.gradient.max(derivative_error(strains, &gradient, x, h, 0.0));
+    for c in 0..S {
+        let mut stress = [0.0; S];
+        stress[c] = 1.0;
+        let hessian = dense(&element.geometric(&stack::<K, N>(x), &stress));
+        let component = |x: &[f64]| gradients(x)[c * K * N..(c + 1) * K * N].to_vec();
+        let rows: Vec<f64> = hessian.transpose().iter().copied().collect();
+        // Where the strain is linear its Hessian is zero: compare with gradient/size.
+        let scale = 1e-3 * gradient.iter().fold(0.0, |m: f64, g| m.max(g.abs())) / size;
+        errors.hessian = errors.hessian.max(derivative_error(component, &rows, x, h, scale));
+    }
+    let stress: [f64; S] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+    let clamped = dense(&element.geometric_clamped(&stack::<K, N>(x), &stress)).symmetric_eigenvalues();
+    if clamped.max() > 0.0 {
+        errors.clamped = errors.clamped.max(-clamped.min() / clamped.max());
+    }
+}
+
+fn smallest_distance<const K: usize, const N: usize>(x: &[f64]) -> f64 {
+    let nodes: [Point<N>; K] = stack(x);
+    let mut smallest = f64::MAX;
+    for a in 0..K {
+        for b in 0..a {
+            smallest = smallest.min((nodes[a] - nodes[b]).norm());
+        }
+    }
+    smallest
+}
+
+/// Force change when the state is turned by any rotation and moved by up to a metre.
+fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
+    element: &E,
+    x: &[f64],
+    rng: &mut StdRng,
+    errors: &mut Errors,
+) {
+    let nodes: [Point<3>; K] = stack(x);
+    let axis = Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0));
+    let rotation = Rotation3::new(axis);
+    let shift = Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5));
+    let moved = nodes.map(|p| rotation * p + shift);
+    let force = |nodes: &[Point<3>; K]| {
+        let (strains, gradients) = (element.strains(nodes), element.gradients(nodes));
+        std::array::from_fn::<_, K, _>(|a| (0..S).map(|c| gradients[c][a] * strains[c]).sum::<Vector3<f64>>())
+    };
+    let (before, after) = (force(&nodes), force(&moved));
+    // The largest force of an element is that of a strain of one.
+    let largest = element.gradients(&nodes).iter().flatten().fold(0.0, |m: f64, g| m.max(g.norm()));
+    for (before, after) in before.iter().zip(&after) {
+        errors.rigid = errors.rigid.max((rotation * before - after).norm() / largest);
+    }
+}
+
+/// A random state of `K` nodes whose rest places are given: an affine map, a jitter, and a rigid motion.
+fn state<const K: usize>(rest: &[[f64; 3]; K], rng: &mut StdRng) -> Vec<f64> {
+    let stretch = rng.random_range(0.3..1.8);
+    let shear = rng.random_range(-0.8..0.8);
+    let jitter = if rng.random_bool(0.2) { 0.0 } else { rng.random_range(0.0..0.3) * CELL };
+    let rotation = Rotation3::new(Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0)));
+    let shift = Vector3::from_fn(|_, _| rng.random_range(-0.05..0.05));
+    rest.iter()
+        .flat_map(|p| {
+            let p = Vector3::new(stretch * p[0] + shear * p[1], p[1], p[2]);
+            let p = p + Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0) * jitter);
+            let p = rotation * p + shift;
+            [p.x, p.y, p.z]
+        })
+        .collect()
+}
+
+fn planar(x: &[f64]) -> Vec<f64> {
+    x.chunks(3).flat_map(|p| [p[0], p[1]]).collect()
+}
+
+fn triangle(rng: &mut StdRng) -> ([[f64; 3]; 3], Triangle) {
+    let corner = |x: f64, y: f64, rng: &mut StdRng| {
+        [x * CELL + rng.random_range(-0.2..0.2) * CELL, y * CELL + rng.random_range(-0.2..0.2) * CELL, 0.0]
+    };
+    let rest = [corner(0.0, 0.0, rng), corner(1.0, 0.0, rng), corner(0.3, 1.0, rng)];
+    let mesh = cloth_sim::mesh::Mesh::new(
+        rest.iter().map(|p| Vector3::from(*p)).collect(),
+        rest.iter().map(|p| Vector2::new(p[0], p[1])).collect(),
+        vec![[0, 1, 2]],
+    )
+    .unwrap();
+    (rest, Triangle::new(&mesh, 0))
+}
+
+/// Two wings about an edge along x, folded by an angle.
+fn hinge(rng: &mut StdRng) -> ([[f64; 3]; 4], Hinge) {
+    let fold: f64 = rng.random_range(-2.8..2.8);
+    let [a, b] = [rng.random_range(0.5..1.5) * CELL, rng.random_range(0.5..1.5) * CELL];
+    let rest = [
+        [0.0, 0.0, 0.0],
+        [CELL, 0.0, 0.0],
+        [rng.random_range(0.0..1.0) * CELL, a, 0.0],
+        [rng.random_range(0.0..1.0) * CELL, -b * fold.cos(), b * fold.sin()],
+    ];
+    let hinge = Hinge {
+        nodes: [0, 1, 2, 3],
+        rest_angle: rng.random_range(-0.3..0.3),
+        rest_length: CELL,
+        width: (a + b) / 6.0,
+        component: Component::BendWeft,
+    };
+    (rest, hinge)
+}
+
+fn run(states: usize) {
+    let mut rng = StdRng::seed_from_u64(7);
+    let [mut stvk, mut soft, mut spring, mut shell]: [Errors; 4] = Default::default();
+    let mut folds = 0;
+    for _ in 0..states {
+        let (rest, shape) = triangle(&mut rng);
+        let x = state(&rest, &mut rng);
+        let flat = planar(&x);
+        let node = |x: &[f64], i: usize| Vector2::new(x[2 * i], x[2 * i + 1]);
+        let collapsed = (0..3).any(|i| (node(&flat, i) - node(&flat, (i + 1) % 3)).norm() < 0.02 * CELL);
+        // Soft constraints have no derivative at |w| = 0 (numerics: the length is smoothed there).
+        let [w_u, w_v] = shape.deformation(&stack::<3, 2>(&flat));
+        let short = w_u.norm() < 0.1 || w_v.norm() < 0.1;
+        check::<3, 3, 3, _>(&StvkTriangle(shape), &x, &mut rng, &mut stvk);
+        check::<3, 3, 3, _>(&SoftTriangle(shape), &x, &mut rng, &mut soft);
+        if !collapsed && !short {
+            check::<3, 2, 3, _>(&StvkTriangle(shape), &flat, &mut rng, &mut stvk);
+            check::<3, 2, 3, _>(&SoftTriangle(shape), &flat, &mut rng, &mut soft);
+        }
+        check_rigid(&StvkTriangle(shape), &x, &mut rng, &mut stvk);
+        check_rigid(&SoftTriangle(shape), &x, &mut rng, &mut soft);
+
+        let line =
+            Spring { nodes: [0, 1], rest_length: CELL, area: CELL * CELL, component: Component::Shear };
+        let ends = state(&[[0.0; 3], [CELL, 0.0, 0.0]], &mut rng);
+        check::<2, 3, 1, _>(&line, &ends, &mut rng, &mut spring);
+        check_rigid(&line, &ends, &mut rng, &mut spring);
+
+        let (rest, fold) = hinge(&mut rng);
+        let x = state(&rest, &mut rng);
+        let nodes: [Point<3>; 4] = stack(&x);
+        let height = |wing: usize| {
+            let edge = nodes[1] - nodes[0];
+            edge.cross(&(nodes[wing] - nodes[0])).norm() / edge.norm()
+        };
+        let turn = fold.strains(&nodes)[0] * fold.width + fold.rest_angle;
+        // Away from a collapsed wing and from the jump at ±π.
+        if height(2).min(height(3)) > 0.1 * CELL && turn.abs() < 2.8 {
+            folds += 1;
+            check::<4, 3, 1, _>(&fold, &x, &mut rng, &mut shell);
+            check_rigid(&fold, &x, &mut rng, &mut shell);
+        }
+    }
+    assert!(folds > states / 3, "{folds} folded states");
+    for (name, errors) in [("stvk", stvk), ("soft", soft), ("spring", spring), ("hinge", shell)] {
+        println!("{name}: {states} states, {errors:?}");
+        assert!(errors.gradient <= 1e-6, "{name}: {errors:?}");
+        assert!(errors.hessian <= 1e-5, "{name}: {errors:?}");
+        assert!(errors.rigid <= 1e-9, "{name}: {errors:?}");
+        assert!(errors.clamped <= 1e-12, "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn elements_are_the_derivatives_of_their_strains() {
+    run(2_000);
+}
+
+#[test]
+#[ignore = "release: the full 1e5 states"]
+fn full_count() {
+    run(100_000);
+}
