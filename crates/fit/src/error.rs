@@ -36,6 +36,16 @@ pub enum Error {
         /// Why.
         source: cloth_sim::error::Error,
     },
+    /// A measurement that no simulation grid or clip fits.
+    #[error("sequence {sequence}: found {found}, expected {expected}")]
+    Geometry {
+        /// Name of the sequence.
+        sequence: String,
+        /// What was found.
+        found: String,
+        /// What was expected, and what to do.
+        expected: String,
+    },
     /// A setting is outside what it may be.
     #[error("{field}: found {found}, expected {expected}")]
     Setting {

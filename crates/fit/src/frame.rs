@@ -3,7 +3,7 @@
 //! Plain data in SI units. [`io`](crate::io) is its only reader and writer.
 
 use cloth_sim::mesh::Mesh;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// A fabric sample and all its measured sequences: one folder on disk.
@@ -181,5 +181,24 @@ impl Frame {
     /// Sum of the cords on a clip, N; `None` if its force was not measured.
     pub fn clip_force(&self, clip: usize) -> Option<Vector3<f64>> {
         self.cords.iter().filter(|cord| cord.clip == clip).map(|cord| cord.force).reduce(|a, b| a + b)
+    }
+}
+
+/// A place in a triangle mesh: a triangle and barycentric weights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshPoint {
+    /// Index of the triangle.
+    pub triangle: usize,
+    /// Weights of its three vertices; they sum to one.
+    pub weights: [f64; 3],
+}
+
+impl MeshPoint {
+    /// The value there of what is known at the vertices.
+    ///
+    /// A vertex without weight does not enter, so that it may be unobserved.
+    pub fn interpolate<const D: usize>(&self, mesh: &Mesh, values: &[SVector<f64, D>]) -> SVector<f64, D> {
+        let corners = mesh.triangles[self.triangle].into_iter().zip(self.weights);
+        corners.filter(|(_, weight)| weight.abs() > 1e-9).map(|(vertex, weight)| values[vertex] * weight).sum()
     }
 }

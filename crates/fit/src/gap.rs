@@ -1,0 +1,61 @@
+//! A start from the equilibrium gap: one linear least squares, no simulation.
+//!
+//! Shapes and forces are both measured (or the shape is close to the clips' blended motion), and stress is linear in
+//! the control values. So is the virtual work of the stresses under each clip's field φ, which balances that clip's
+//! force alone:
+//!
+//! ```text
+//! minimise over k   Σ_frames Σ_clips | Σ_n φ_c(n) g_n(x̃, k) − F̃_c |²     subject to the curve's constraints
+//! ```
+//!
+//! Noise in the shapes biases it: it is a start, not a result. Source: virtual fields and equilibrium gap, Grédiac et
+//! al. 2006; Claire et al. 2004.
+
+use crate::gauss_newton::Domain;
+use crate::least_squares::{LeastSquares, Smoothing};
+use crate::replica::Replica;
+use cloth_sim::cloth::ForceScale;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::{Component, Curves};
+use nalgebra::{DMatrix, DVector};
+
+/// Control values at the curve's strains that balance the measured forces on the blended shapes best.
+pub fn start(
+    replicas: &[Replica],
+    component: Component,
+    curve: &StiffnessCurve,
+    known: &Curves,
+    domain: &Domain,
+) -> DVector<f64> {
+    let points = curve.len();
+    let mut curves = known.clone();
+    curves.set(component, curve.clone());
+    let (mut rows, mut target): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    for replica in replicas {
+        let cloth = &replica.cloth;
+        let mut gradient = vec![0.0; 3 * cloth.nodes()];
+        let mut columns = Vec::new();
+        for frame in &replica.frames {
+            cloth.gradient(known, &frame.start, &mut gradient, &mut ForceScale::new(cloth.nodes()));
+            cloth.parameter_gradient(&curves, component, &frame.start, &mut columns);
+            for force in &frame.forces {
+                let work = |column: &[f64]| -> f64 {
+                    let nodes = column.chunks_exact(3).zip(&replica.fields[force.clip]);
+                    nodes.map(|(g, weight)| weight * (0..3).map(|i| g[i] * force.direction[i]).sum::<f64>()).sum()
+                };
+                rows.extend(columns.chunks_exact(gradient.len()).map(work));
+                target.push(force.force - work(&gradient));
+            }
+        }
+    }
+    let problem = LeastSquares {
+        rows: domain.rows.clone(),
+        bounds: domain.bounds.clone(),
+        smoothing: domain
+            .roughness
+            .clone()
+            .map(|roughness| Smoothing { roughness, point: DVector::zeros(points) }),
+        ..LeastSquares::new(DMatrix::from_row_slice(target.len(), points, &rows), DVector::from_vec(target))
+    };
+    problem.solve().point
+}

@@ -1,0 +1,347 @@
+//! All frames of one stage in equilibrium under trial curves: residuals of clip forces, and their sensitivities.
+//!
+//! ```text
+//! equilibrium      g(x, k) = 0 at the free nodes                       g = ∇E
+//! clip force       F_c = Σ g over the clip's nodes
+//! sensitivity      dx/dk = −K⁻¹ ∂g/∂k        dF_c/dk = ∂F_c/∂k + (∂F_c/∂x) dx/dk
+//! ```
+//!
+//! K is the true stiffness matrix at the equilibrium, whose factorisation the equilibrium leaves behind; all control
+//! points are solved for at once. Frames are independent: they run in parallel and are collected in order.
+//!
+//! Source: Miguel et al. 2012, eqs. 7–9; without the μI that they keep in K (docs/model.md).
+
+use crate::gauss_newton::{Evaluation, Residuals};
+use crate::replica::{Replica, ReplicaFrame};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::equilibrium::{Settings, Solver, Status};
+use cloth_sim::material::{Component, Curves};
+use nalgebra::{DMatrix, DVector, Vector3};
+use rayon::prelude::*;
+use std::convert::Infallible;
+use std::sync::Mutex;
+
+/// What the solves of a stage have cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Equilibria sought.
+    pub equilibria: usize,
+    /// Newton steps.
+    pub iterations: usize,
+    /// Factorisations.
+    pub factorisations: usize,
+}
+
+/// A frame that takes no part because its equilibrium was not found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DroppedFrame {
+    /// Name of the sequence.
+    pub sequence: String,
+    /// Index of the frame in it.
+    pub frame: usize,
+    /// How the solve ended.
+    pub status: Status,
+}
+
+/// The equilibrium of one frame at some control values.
+#[derive(Debug, Clone)]
+struct State {
+    x: Vec<f64>,
+    /// dx/dk: one column of unknowns a control value; empty before the first solve.
+    sensitivity: Vec<f64>,
+}
+
+/// A frame's share of an evaluation.
+struct FrameResult {
+    state: State,
+    status: Status,
+    /// Simulated force along each measured component, N.
+    forces: Vec<f64>,
+    /// Its derivatives, component-major.
+    derivatives: Vec<f64>,
+    counters: Counters,
+}
+
+/// A stage's replicas under one unknown curve.
+pub struct Simulation<'a> {
+    replicas: &'a [Replica],
+    solvers: Vec<Mutex<Vec<Solver<'a>>>>,
+    component: Component,
+    curve: StiffnessCurve,
+    known: Curves,
+    settings: Settings,
+    /// (replica, frame) of every frame in use.
+    frames: Vec<(usize, usize)>,
+    states: Vec<State>,
+    dropped: Vec<DroppedFrame>,
+    counters: Counters,
+}
+
+impl<'a> Simulation<'a> {
+    /// Finds the first equilibria, and drops the frames that have none.
+    ///
+    /// * `curve` — the component's curve to start from; its strains are the control points that are fitted
+    /// * `known` — the curves of the other components
+    pub fn new(
+        replicas: &'a [Replica],
+        component: Component,
+        curve: StiffnessCurve,
+        known: Curves,
+        settings: Settings,
+    ) -> Self {
+        let frames: Vec<(usize, usize)> = replicas
+            .iter()
+            .enumerate()
+            .flat_map(|(replica, r)| (0..r.frames.len()).map(move |frame| (replica, frame)))
+            .collect();
+        let mut simulation = Self {
+            replicas,
+            solvers: replicas.iter().map(|_| Mutex::new(Vec::new())).collect(),
+            component,
+            curve,
+            known,
+            settings,
+            states: Vec::new(),
+            frames,
+            dropped: Vec::new(),
+            counters: Counters::default(),
+        };
+        let curves = simulation.curves(&simulation.curve);
+        simulation.states = simulation
+            .frames
+            .par_iter()
+            .map(|&(replica, frame)| start_state(&replicas[replica], &replicas[replica].frames[frame], &curves))
+            .collect();
+        let results = simulation.solve_frames(&curves, None);
+        let (mut frames, mut states) = (Vec::new(), Vec::new());
+        for (&(replica, frame), result) in simulation.frames.iter().zip(results) {
+            simulation.counters.add(&result.counters);
+            if result.status == Status::Converged {
+                frames.push((replica, frame));
+                states.push(result.state);
+            } else {
+                simulation.dropped.push(DroppedFrame {
+                    sequence: replicas[replica].name.clone(),
+                    frame: replicas[replica].frames[frame].index,
+                    status: result.status,
+                });
+            }
+        }
+        (simulation.frames, simulation.states) = (frames, states);
+        simulation
+    }
+
+    /// Goes on with other control points; states stay.
+    pub fn set_curve(&mut self, curve: StiffnessCurve) {
+        self.curve = curve;
+        // Sensitivities belong to the old control values.
+        self.states.iter_mut().for_each(|state| state.sensitivity.clear());
+    }
+
+    /// The curve of the last evaluation.
+    pub fn curve(&self) -> &StiffnessCurve {
+        &self.curve
+    }
+
+    /// What was spent so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// Frames without an equilibrium.
+    pub fn dropped(&self) -> &[DroppedFrame] {
+        &self.dropped
+    }
+
+    /// The frames in use, with their replicas and states.
+    pub fn frames(&self) -> impl Iterator<Item = (&'a Replica, &'a ReplicaFrame, &[f64])> {
+        let replicas = self.replicas;
+        self.frames.iter().zip(&self.states).map(move |(&(replica, frame), state)| {
+            (&replicas[replica], &replicas[replica].frames[frame], &state.x[..])
+        })
+    }
+
+    /// Simulated forces along the measured components of every frame, N, with the last curve.
+    pub fn forces(&mut self) -> Vec<Vec<f64>> {
+        let curves = self.curves(&self.curve);
+        let results = self.solve_frames(&curves, None);
+        results.iter().for_each(|result| self.counters.add(&result.counters));
+        results.into_iter().map(|result| result.forces).collect()
+    }
+
+    /// The 1st and 99th percentile of the component's strains over all states.
+    pub fn visited(&self) -> [f64; 2] {
+        let mut strains: Vec<f64> = self
+            .frames()
+            .flat_map(|(replica, _, x)| replica.cloth.strains(self.component, x))
+            .map(|[strain, _]| strain)
+            .collect();
+        strains.sort_by(f64::total_cmp);
+        let percentile = |share: f64| {
+            let place = share * strains.len().saturating_sub(1) as f64;
+            strains.get(place.round() as usize).copied().unwrap_or(0.0)
+        };
+        [percentile(0.01), percentile(0.99)]
+    }
+
+    fn curves(&self, curve: &StiffnessCurve) -> Curves {
+        let mut curves = self.known.clone();
+        curves.set(self.component, curve.clone());
+        curves
+    }
+
+    /// Equilibria of all frames; `change` of the control values since the states were found moves them ahead.
+    fn solve_frames(&self, curves: &Curves, change: Option<&DVector<f64>>) -> Vec<FrameResult> {
+        self.frames
+            .par_iter()
+            .zip(&self.states)
+            .map(|(&(replica, frame), state)| self.solve_frame(replica, frame, state, curves, change))
+            .collect()
+    }
+
+    fn solve_frame(
+        &self,
+        replica: usize,
+        frame: usize,
+        state: &State,
+        curves: &Curves,
+        change: Option<&DVector<f64>>,
+    ) -> FrameResult {
+        let Replica { cloth, frames, .. } = &self.replicas[replica];
+        let pool = &self.solvers[replica];
+        // A poisoned pool only means that another frame panicked; its solvers hold no state that matters.
+        let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
+        let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
+        let mut x = state.x.clone();
+        if let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * cloth.unknowns()) {
+            for (column, step) in state.sensitivity.chunks_exact(cloth.unknowns().max(1)).zip(change.iter()) {
+                for (&coordinate, slope) in cloth.unknown_coordinates().iter().zip(column) {
+                    x[coordinate] += slope * step;
+                }
+            }
+        }
+        let mut counters = Counters::default();
+        let mut solve = |x: &mut Vec<f64>| {
+            let equilibrium = solver.solve(curves, x, &self.settings);
+            counters.add(&Counters {
+                equilibria: 1,
+                iterations: equilibrium.iterations,
+                factorisations: equilibrium.factorisations,
+            });
+            equilibrium.status
+        };
+        let mut status = solve(&mut x);
+        if status != Status::Converged && change.is_some() {
+            // A prediction that went too far: from the frame's own start instead.
+            x.copy_from_slice(&frames[frame].start);
+            status = solve(&mut x);
+        }
+        let (forces, derivatives, sensitivity) = self.sensitivities(&mut solver, replica, frame, curves, &x);
+        pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(solver);
+        FrameResult { state: State { x, sensitivity }, status, forces, derivatives, counters }
+    }
+
+    /// Simulated force components, their derivatives, and dx/dk.
+    fn sensitivities(
+        &self,
+        solver: &mut Solver<'_>,
+        replica: usize,
+        frame: usize,
+        curves: &Curves,
+        x: &[f64],
+    ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let Replica { cloth, frames, .. } = &self.replicas[replica];
+        let unknowns = cloth.unknowns();
+        let mut columns = Vec::new();
+        cloth.parameter_gradient(curves, self.component, x, &mut columns);
+        let mut sensitivity: Vec<f64> = columns
+            .chunks_exact(x.len())
+            .flat_map(|column| cloth.unknown_coordinates().iter().map(|&coordinate| -column[coordinate]))
+            .collect();
+        solver.solve_linear(&mut sensitivity);
+        let direct: Vec<Vec<Vector3<f64>>> =
+            columns.chunks_exact(x.len()).map(|column| cloth.clip_forces(column)).collect();
+        let border = solver.border();
+        let through_shape = |clip: usize, point: usize| -> Vector3<f64> {
+            let slopes = &sensitivity[point * unknowns..(point + 1) * unknowns];
+            Vector3::from_fn(|i, _| {
+                let row = &border[(3 * clip + i) * unknowns..(3 * clip + i + 1) * unknowns];
+                row.iter().zip(slopes).map(|(a, b)| a * b).sum()
+            })
+        };
+        let forces = solver.clip_forces();
+        let components = &frames[frame].forces;
+        let simulated = components.iter().map(|c| forces[c.clip].dot(&c.direction)).collect();
+        let derivatives = components
+            .iter()
+            .flat_map(|c| {
+                (0..direct.len())
+                    .map(|point| (direct[point][c.clip] + through_shape(c.clip, point)).dot(&c.direction))
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        (simulated, derivatives, sensitivity)
+    }
+}
+
+impl Residuals for Simulation<'_> {
+    type Error = Infallible;
+
+    /// Residuals of all measured force components, N, frame by frame.
+    fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
+        let failed = |reason: String| Ok(Evaluation::Failed { reason });
+        let curve = match self.curve.with_stiffnesses(point.iter().copied().collect()) {
+            Ok(curve) => curve,
+            Err(error) => return failed(error.to_string()),
+        };
+        let change = point - DVector::from_column_slice(self.curve.stiffnesses());
+        let results = self.solve_frames(&self.curves(&curve), Some(&change));
+        results.iter().for_each(|result| self.counters.add(&result.counters));
+        if let Some(index) = results.iter().position(|result| result.status != Status::Converged) {
+            let (replica, frame) = self.frames[index];
+            let replica = &self.replicas[replica];
+            return failed(format!(
+                "no equilibrium of {} frame {}: {}",
+                replica.name, replica.frames[frame].index, results[index].status
+            ));
+        }
+        let points = point.len();
+        let measured = self.frames.iter().flat_map(|&(replica, frame)| &self.replicas[replica].frames[frame].forces);
+        let simulated = results.iter().flat_map(|result| &result.forces);
+        let residual: Vec<f64> = measured.zip(simulated).map(|(measured, simulated)| measured.force - simulated).collect();
+        let rows = residual.len();
+        let derivatives: Vec<f64> = results.iter().flat_map(|result| result.derivatives.iter().copied()).collect();
+        self.states = results.into_iter().map(|result| result.state).collect();
+        self.curve = curve;
+        Ok(Evaluation::Values {
+            residual: DVector::from_vec(residual),
+            jacobian: Some(DMatrix::from_row_slice(rows, points, &derivatives)),
+        })
+    }
+}
+
+impl Counters {
+    fn add(&mut self, other: &Self) {
+        self.equilibria += other.equilibria;
+        self.iterations += other.iterations;
+        self.factorisations += other.factorisations;
+    }
+}
+
+/// The blended shape or, where it is nearer to balance, the measured one with the clips in place.
+fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
+    let cloth = &replica.cloth;
+    let blended = frame.start.clone();
+    let Some(observed) = frame.observed.as_ref().filter(|x| x.iter().all(|c| c.is_finite())) else {
+        return State { x: blended, sensitivity: Vec::new() };
+    };
+    let mut measured = blended.clone();
+    cloth.unknown_coordinates().iter().for_each(|&c| measured[c] = observed[c]);
+    let imbalance = |x: &[f64]| {
+        let mut gradient = vec![0.0; x.len()];
+        cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));
+        cloth.unknown_coordinates().iter().map(|&c| gradient[c] * gradient[c]).sum::<f64>()
+    };
+    let x = if imbalance(&measured) < imbalance(&blended) { measured } else { blended };
+    State { x, sensitivity: Vec::new() }
+}

@@ -1,0 +1,304 @@
+//! The specimen as the simulation sees it: a regular grid over the measured rest rectangle, in a frame of its own.
+//!
+//! ```text
+//! measured mesh (any triangulation, any place in space)        specimen frame
+//!        ______                                             y │
+//!       /\ /| /                                               │▒▒▒▒▒▒▒▒   rest rectangle at z = 0, corner at 0,
+//!      /  \/|/           ── isometry ──▶                      │▒▒▒▒▒▒▒▒   x along its side nearer to weft
+//!      ‾‾‾‾‾‾                                                 └────────x
+//! ```
+
+use crate::error::{Error, Result};
+use crate::frame::{MeshPoint, Sequence};
+use cloth_sim::mesh::{Diagonals, Grid, Mesh};
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector2, Vector3};
+
+/// Cells along the two sides of a square specimen unless told otherwise: 25×25 nodes.
+const DEFAULT_CELLS: usize = 24;
+
+/// The simulation's grid over a measured specimen.
+#[derive(Debug, Clone)]
+pub struct Specimen {
+    /// Maps world coordinates into the specimen's frame.
+    pub frame: Isometry3<f64>,
+    /// The grid as a mesh, in the specimen's frame; material coordinates are the measured ones.
+    pub mesh: Mesh,
+    /// The grid.
+    pub grid: Grid,
+    /// Where each grid node lies in the measured mesh.
+    pub samples: Vec<MeshPoint>,
+}
+
+impl Specimen {
+    /// Lays a grid over a sequence's rest mesh.
+    ///
+    /// * `nodes` — columns and rows; `None` = as many cells as 25×25 nodes have, near square
+    ///
+    /// # Errors
+    /// A rest mesh that is not a flat rectangle; too few nodes.
+    pub fn new(sequence: &Sequence, nodes: Option<[usize; 2]>, diagonals: Diagonals) -> Result<Self> {
+        let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
+        let rectangle = Rectangle::of(sequence)?;
+        let [width, height] = rectangle.size;
+        let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height));
+        let grid = Grid { columns, rows, width, height, diagonals };
+        let mut mesh = grid.mesh().map_err(mechanics)?;
+        let locator = Locator::new(&sequence.mesh, &rectangle);
+        let samples: Vec<MeshPoint> = mesh.positions.iter().map(|p| locator.find(p.xy())).collect();
+        for (material, sample) in mesh.material.iter_mut().zip(&samples) {
+            *material = sample.interpolate(&sequence.mesh, &sequence.mesh.material);
+        }
+        let checked = Mesh::new(mesh.positions, mesh.material, mesh.triangles).map_err(mechanics)?;
+        Ok(Self { frame: rectangle.frame, mesh: Mesh { grid: Some(grid), ..checked }, grid, samples })
+    }
+
+    /// The grid's nodes at rest, in world coordinates, m.
+    pub fn rest_in_world(&self, node: usize) -> Vector3<f64> {
+        let inverse = self.frame.inverse();
+        inverse.rotation * self.mesh.positions[node] + inverse.translation.vector
+    }
+
+    /// A world position in the specimen's frame.
+    pub fn place(&self, world: &Vector3<f64>) -> Vector3<f64> {
+        self.frame.rotation * world + self.frame.translation.vector
+    }
+
+    /// A world direction (force, gravity) in the specimen's frame.
+    pub fn turn(&self, world: &Vector3<f64>) -> Vector3<f64> {
+        self.frame.rotation * world
+    }
+}
+
+/// Columns and rows that make cells near square, as many as 24×24.
+fn near_square(width: f64, height: f64) -> [usize; 2] {
+    let cells = (DEFAULT_CELLS * DEFAULT_CELLS) as f64;
+    let side = (width * height / cells).sqrt();
+    [width, height].map(|length| ((length / side).round() as usize).max(2) + 1)
+}
+
+/// The rest rectangle.
+struct Rectangle {
+    frame: Isometry3<f64>,
+    /// Extent along x and y of the specimen's frame, m.
+    size: [f64; 2],
+    /// Rest positions in the specimen's frame.
+    flat: Vec<Vector2<f64>>,
+}
+
+impl Rectangle {
+    fn of(sequence: &Sequence) -> Result<Self> {
+        let mesh = &sequence.mesh;
+        let bad = |found: String, expected: &str| Error::Geometry {
+            sequence: sequence.name.clone(),
+            found,
+            expected: expected.into(),
+        };
+        // Summed over triangles the normal does not care how fine the mesh is; it points to where weft × warp does.
+        let corner = |triangle: &[usize; 3]| triangle.map(|vertex| mesh.positions[vertex]);
+        let normals = mesh.triangles.iter().map(|t| corner(t)).map(|[a, b, c]| (b - a).cross(&(c - a)));
+        let double_area: Vector3<f64> = normals.clone().sum();
+        let normal = double_area.normalize();
+        let centre = mesh.positions.iter().sum::<Vector3<f64>>() / mesh.len() as f64;
+        let off_plane = mesh.positions.iter().fold(0.0f64, |m, p| m.max((p - centre).dot(&normal).abs()));
+        let area: f64 = normals.map(|n| n.norm()).sum::<f64>() / 2.0;
+        if off_plane > 0.01 * area.sqrt() {
+            return Err(bad(format!("a vertex {off_plane:.2e} m off the plane"), "a flat rest mesh"));
+        }
+        let weft = weft_direction(mesh, &normal);
+        let turned = |x: Vector3<f64>| Matrix3::from_columns(&[x, normal.cross(&x), normal]).transpose();
+        let flatten = |axes: &Matrix3<f64>| -> Vec<Vector2<f64>> {
+            mesh.positions.iter().map(|p| (axes * (p - centre)).xy()).collect()
+        };
+        let hull = convex_hull(flatten(&turned(weft)));
+        let weft_axes = turned(weft);
+        // The side of the hull whose box is smallest; among equal ones the nearest to weft.
+        let sides = (0..hull.len()).map(|i| (hull[(i + 1) % hull.len()] - hull[i]).normalize());
+        let best = sides
+            .map(|side| {
+                let turn = quarter_turn(side);
+                let [low, high] = bounds(hull.iter().map(|p| Vector2::new(p.dot(&turn), turn.perp(p))));
+                let extent = high - low;
+                (turn, extent.x * extent.y)
+            })
+            .min_by(|(a, area_a), (b, area_b)| {
+                let close = (area_a - area_b).abs() <= 1e-9 * area_a;
+                if close { b.x.total_cmp(&a.x) } else { area_a.total_cmp(area_b) }
+            });
+        let Some((side, box_area)) = best else {
+            return Err(bad("no triangle".into(), "a rest mesh"));
+        };
+        if (box_area - area).abs() > 0.01 * area {
+            return Err(bad(
+                format!("a rest mesh of {area:.3e} m² in a rectangle of {box_area:.3e} m²"),
+                "a rectangular specimen",
+            ));
+        }
+        let x = weft_axes.transpose() * Vector3::new(side.x, side.y, 0.0);
+        let axes = turned(x);
+        let [low, high] = bounds(flatten(&axes).into_iter());
+        let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+        let shift = -(rotation * centre) - Vector3::new(low.x, low.y, 0.0);
+        let frame = Isometry3::from_parts(Translation3::from(shift), rotation);
+        let flat = mesh.positions.iter().map(|p| (rotation * p + shift).xy()).collect();
+        Ok(Self { frame, size: [high.x - low.x, high.y - low.y], flat })
+    }
+}
+
+/// The weft direction in space at rest: area-weighted mean of ∂position/∂u.
+fn weft_direction(mesh: &Mesh, normal: &Vector3<f64>) -> Vector3<f64> {
+    let mut sum = Vector3::zeros();
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex]);
+        let [p, q, r] = triangle.map(|vertex| mesh.material[vertex]);
+        // area × ∂x/∂u, from x = a + (b − a)s + (c − a)t.
+        sum += (b - a) * (r - p).y - (c - a) * (q - p).y;
+    }
+    (sum - normal * sum.dot(normal)).normalize()
+}
+
+/// Turns a direction by quarter turns until it lies within 45° of the x axis; of two at 45° the one with y < 0.
+fn quarter_turn(side: Vector2<f64>) -> Vector2<f64> {
+    let turns = [side, Vector2::new(-side.y, side.x), -side, Vector2::new(side.y, -side.x)];
+    let better = |a: &Vector2<f64>, b: &Vector2<f64>| {
+        if (a.x - b.x).abs() < 1e-6 { b.y.total_cmp(&a.y) } else { a.x.total_cmp(&b.x) }
+    };
+    turns.into_iter().max_by(better).unwrap_or(side)
+}
+
+fn bounds(points: impl Iterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
+    points.fold([Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)], |[low, high], p| [low.inf(&p), high.sup(&p)])
+}
+
+/// Andrew's monotone chain.
+fn convex_hull(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let scale = points.iter().fold(0.0f64, |m, p| m.max(p.norm_squared()));
+    let chain = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
+        let mut chain: Vec<Vector2<f64>> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..] {
+                // Points on a side, give or take rounding, are no corners.
+                if (b - a).perp(&(p - a)) > 1e-9 * scale {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(*p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut points.iter());
+    hull.extend(chain(&mut points.iter().rev()));
+    hull
+}
+
+/// Finds the triangle of a flat mesh that a point lies in, through buckets.
+struct Locator<'a> {
+    mesh: &'a Mesh,
+    rectangle: &'a Rectangle,
+    buckets: Vec<Vec<usize>>,
+    side: usize,
+}
+
+impl<'a> Locator<'a> {
+    fn new(mesh: &'a Mesh, rectangle: &'a Rectangle) -> Self {
+        let side = ((mesh.triangles.len() as f64).sqrt() as usize / 2).max(1);
+        let mut locator = Self { mesh, rectangle, buckets: vec![Vec::new(); side * side], side };
+        for (index, triangle) in mesh.triangles.iter().enumerate() {
+            let [low, high] = bounds(triangle.iter().map(|&vertex| rectangle.flat[vertex]));
+            let ([i0, j0], [i1, j1]) = (locator.bucket(low), locator.bucket(high));
+            for j in j0..=j1 {
+                (i0..=i1).for_each(|i| locator.buckets[j * side + i].push(index));
+            }
+        }
+        locator
+    }
+
+    fn bucket(&self, p: Vector2<f64>) -> [usize; 2] {
+        let place = |p: f64, size: f64| ((p / size * self.side as f64).max(0.0) as usize).min(self.side - 1);
+        [place(p.x, self.rectangle.size[0]), place(p.y, self.rectangle.size[1])]
+    }
+
+    /// The triangle that a point lies in, or lies outside of the least (rounding at the border).
+    fn find(&self, p: Vector2<f64>) -> MeshPoint {
+        let [i, j] = self.bucket(p);
+        let here = &self.buckets[j * self.side + i];
+        let depth = |point: &MeshPoint| point.weights.into_iter().fold(f64::MAX, f64::min);
+        let best = |triangles: &mut dyn Iterator<Item = usize>| {
+            triangles
+                .map(|triangle| self.barycentric(triangle, p))
+                .max_by(|a, b| depth(a).total_cmp(&depth(b)))
+        };
+        match best(&mut here.iter().copied()) {
+            Some(point) if depth(&point) > -1e-9 => point,
+            // A coarse mesh may leave a bucket's border to a neighbour.
+            _ => best(&mut (0..self.mesh.triangles.len())).unwrap_or(MeshPoint { triangle: 0, weights: [1.0, 0.0, 0.0] }),
+        }
+    }
+
+    fn barycentric(&self, triangle: usize, p: Vector2<f64>) -> MeshPoint {
+        let [a, b, c] = self.mesh.triangles[triangle].map(|vertex| self.rectangle.flat[vertex]);
+        let area = (b - a).perp(&(c - a));
+        let [u, v] = [(p - a).perp(&(c - a)) / area, (b - a).perp(&(p - a)) / area];
+        MeshPoint { triangle, weights: [1.0 - u - v, u, v] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Kind;
+
+    fn sequence(mesh: Mesh) -> Sequence {
+        Sequence {
+            name: "test".into(),
+            kind: Kind::StretchWeft,
+            gravity: Vector3::zeros(),
+            noise: None,
+            force_direction: None,
+            table: None,
+            mesh,
+            clips: Vec::new(),
+            frames: Vec::new(),
+        }
+    }
+
+    fn rectangle(width: f64, height: f64) -> Mesh {
+        Grid { columns: 14, rows: 9, width, height, diagonals: Diagonals::Alternating }.mesh().unwrap()
+    }
+
+    #[test]
+    fn a_grid_is_laid_over_a_specimen_wherever_it_is() {
+        let mut mesh = rectangle(0.08, 0.04);
+        let motion = Isometry3::new(Vector3::new(0.3, -0.2, 0.9), Vector3::new(0.4, 1.2, -0.7));
+        mesh.positions.iter_mut().for_each(|p| *p = motion.rotation * *p + motion.translation.vector);
+        let specimen = Specimen::new(&sequence(mesh), None, Diagonals::Forward).unwrap();
+        let [dx, dy] = specimen.grid.cell();
+        assert!((dx / dy - 1.0).abs() < 0.05, "{dx} {dy}");
+        assert!((specimen.grid.width - 0.08).abs() < 1e-12 && (specimen.grid.height - 0.04).abs() < 1e-12);
+        for (node, material) in specimen.mesh.material.iter().enumerate() {
+            assert!((material - specimen.mesh.positions[node].xy()).norm() < 1e-12);
+            assert!((specimen.place(&specimen.rest_in_world(node)) - specimen.mesh.positions[node]).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_strip_cut_on_the_bias_keeps_its_yarns() {
+        let mut mesh = rectangle(0.03, 0.1);
+        let turn = nalgebra::Rotation2::new(std::f64::consts::FRAC_PI_4);
+        mesh.material.iter_mut().for_each(|m| *m = turn * *m);
+        let specimen = Specimen::new(&sequence(mesh), Some([5, 13]), Diagonals::Forward).unwrap();
+        assert_eq!(specimen.grid.columns * specimen.grid.rows, 65);
+        let along = specimen.mesh.material[1] - specimen.mesh.material[0];
+        assert!((along.x.abs() - along.y.abs()).abs() < 1e-9 * along.norm());
+    }
+
+    #[test]
+    fn what_is_no_rectangle_is_refused() {
+        let mut mesh = rectangle(0.1, 0.1);
+        let shear = |p: f64, q: f64| p + 0.3 * q;
+        mesh.positions.iter_mut().for_each(|p| p.x = shear(p.x, p.y));
+        assert!(Specimen::new(&sequence(mesh), None, Diagonals::Forward).is_err());
+    }
+}
