@@ -2,5 +2,7 @@
 
 pub mod error;
 pub mod frame;
-pub mod specimen;
+pub mod io;
 pub mod replica;
+pub mod specimen;
+pub mod store;

@@ -1,0 +1,24 @@
+//! Clips by their names in tables.
+
+use super::source::shown;
+use super::table::Table;
+use crate::error::Result;
+use crate::frame::Clip;
+
+/// The clip that a field names.
+pub(super) fn index_of(table: &Table, row: usize, column: usize, clips: &[Clip]) -> Result<usize> {
+    let name = table.text(row, column);
+    clips.iter().position(|clip| clip.name == name).ok_or_else(|| {
+        let known: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();
+        table.invalid(row, "clip", shown(name), format!("a clip of test.toml: {}", known.join(", ")))
+    })
+}
+
+/// A name as a field of a table.
+pub(super) fn quoted(name: &str) -> String {
+    if name.contains([',', '"', ';', '\t']) {
+        format!("\"{}\"", name.replace('"', "\"\""))
+    } else {
+        name.into()
+    }
+}

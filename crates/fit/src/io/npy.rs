@@ -1,0 +1,115 @@
+//! `positions.npy`: the measured shapes as one NumPy array (frames, vertices, 3).
+//!
+//! Written out by hand: the format is a short header before plain numbers, and a header that lies about its size must
+//! end in an error rather than in an overflow.
+
+use super::source::{read_bytes, shown};
+use crate::error::{Error, Result};
+use nalgebra::Vector3;
+use std::path::Path;
+
+/// The shape of one frame; NaN = vertex not observed.
+pub(super) type Shape = Vec<Vector3<f64>>;
+
+const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// Reads an array of float32 or float64, little-endian, in C order.
+pub(super) fn read(path: &Path, vertices: usize) -> Result<Vec<Shape>> {
+    let bytes = read_bytes(path)?;
+    let refuse =
+        |field: &str, found: String, expected: &str| Error::input(path, None, field, found, expected);
+    let (header, data) = split(&bytes)
+        .ok_or_else(|| refuse("header", "no NumPy array".into(), "a file written by numpy.save"))?;
+    let entry = |key: &str| {
+        value(header, key).ok_or_else(|| refuse(key, "nothing".into(), "a header as numpy.save writes it"))
+    };
+    let size = match entry("descr")?.trim_matches(['\'', '"']) {
+        "<f4" => 4,
+        "<f8" => 8,
+        other => return Err(refuse("descr", shown(other), "<f4 or <f8 (little-endian float32 or float64)")),
+    };
+    match entry("fortran_order")? {
+        "False" => {}
+        other => {
+            return Err(refuse(
+                "fortran_order",
+                shown(other),
+                "False (save numpy.ascontiguousarray of the array)",
+            ));
+        }
+    }
+    let shape = entry("shape")?;
+    let expected = format!("(frames, {vertices}, 3), as mesh.obj has {vertices} vertices");
+    let frames = match numbers(shape).as_deref() {
+        Some(&[frames, found, 3]) if frames > 0 && found == vertices => frames,
+        _ => return Err(refuse("shape", shown(shape), &expected)),
+    };
+    let wanted = vertices.checked_mul(3 * size).and_then(|frame| frame.checked_mul(frames));
+    if wanted != Some(data.len()) {
+        let expected = wanted.map_or("fewer frames".into(), |wanted| {
+            format!("{wanted} bytes, for the shape {}", shown(shape))
+        });
+        return Err(refuse("data", format!("{} bytes", data.len()), &expected));
+    }
+    let number = |bytes: &[u8]| match *bytes {
+        [a, b, c, d] => f32::from_le_bytes([a, b, c, d]).into(),
+        [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+        _ => f64::NAN,
+    };
+    let vertex = |bytes: &[u8]| Vector3::from_iterator(bytes.chunks_exact(size).map(number));
+    Ok(data
+        .chunks_exact(3 * size * vertices)
+        .map(|frame| frame.chunks_exact(3 * size).map(vertex).collect())
+        .collect())
+}
+
+/// The array as float32: 6 nm at 0.1 m, finer than any camera. A frame without a shape is NaN throughout.
+pub(super) fn written(shapes: &[Option<&Shape>], vertices: usize) -> Vec<u8> {
+    let mut header =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {vertices}, 3), }}", shapes.len());
+    // The header ends with a line feed, and the data starts at a multiple of 64 bytes.
+    while !(MAGIC.len() + 4 + header.len() + 1).is_multiple_of(64) {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend([1, 0]);
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    for shape in shapes {
+        for vertex in 0..vertices {
+            let position =
+                shape.and_then(|shape| shape.get(vertex).copied()).unwrap_or(Vector3::repeat(f64::NAN));
+            bytes.extend(position.iter().flat_map(|&value| (value as f32).to_le_bytes()));
+        }
+    }
+    bytes
+}
+
+/// Header text and data.
+fn split(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let rest = bytes.strip_prefix(MAGIC)?;
+    let (length, rest) = match *rest {
+        [1, _, a, b, ref rest @ ..] => (u16::from_le_bytes([a, b]).into(), rest),
+        [2 | 3, _, a, b, c, d, ref rest @ ..] => (u32::from_le_bytes([a, b, c, d]).try_into().ok()?, rest),
+        _ => return None,
+    };
+    let (header, data) = rest.split_at_checked(length)?;
+    Some((std::str::from_utf8(header).ok()?, data))
+}
+
+/// The text of an entry of the header, which is a Python dictionary.
+fn value<'a>(header: &'a str, key: &str) -> Option<&'a str> {
+    let at = [format!("'{key}'"), format!("\"{key}\"")]
+        .iter()
+        .find_map(|quoted| header.find(quoted.as_str()).map(|at| at + quoted.len()))?;
+    let text = header[at..].trim_start().strip_prefix(':')?.trim_start();
+    let end = if text.starts_with('(') { text.find(')')? + 1 } else { text.find([',', '}'])? };
+    Some(text[..end].trim())
+}
+
+/// The numbers of `(12, 100, 3)`.
+fn numbers(shape: &str) -> Option<Vec<usize>> {
+    let inner = shape.strip_prefix('(')?.strip_suffix(')')?;
+    inner.split(',').map(str::trim).filter(|text| !text.is_empty()).map(|text| text.parse().ok()).collect()
+}

@@ -1,0 +1,88 @@
+//! Vertices of a PLY file, text or binary.
+
+use super::source::{read_bytes, shown};
+use crate::error::{Error, Result};
+use nalgebra::Vector3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult};
+use std::path::Path;
+
+/// Reads x, y and z of the element `vertex`; in a binary file NaN = not observed.
+pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
+    let bytes = read_bytes(path)?;
+    let refuse = |error: ParseError, text: bool| {
+        let message = error.to_string();
+        let reason = message.lines().next().unwrap_or_default();
+        let reason =
+            reason.split_once(": ").filter(|_| error.line().is_some()).map_or(reason, |(_, reason)| reason);
+        let line = error.line().filter(|_| text);
+        Error::input(path, line, "PLY", shown(reason), "a PLY file with x, y and z of every vertex")
+    };
+    let mut reader = Reader::new(bytes.as_slice());
+    let parser = Parser::<Vertex>::new();
+    let header = parser.read_header(&mut reader).map_err(|error| refuse(error, true))?;
+    for (name, element) in &header.elements {
+        check_size(path, element, bytes.len())?;
+        let vertices = parser
+            .read_payload_for_element(&mut reader, element, &header)
+            .map_err(|error| refuse(error, header.encoding == Encoding::Ascii))?;
+        if name == "vertex" {
+            for axis in ["x", "y", "z"] {
+                if !element.properties.contains_key(axis) {
+                    return Err(Error::input(
+                        path,
+                        None,
+                        axis,
+                        "nothing",
+                        "x, y and z of the element vertex",
+                    ));
+                }
+            }
+            return Ok(vertices.into_iter().map(|vertex| vertex.0).collect());
+        }
+    }
+    Err(Error::input(path, None, "element vertex", "nothing", "the vertices"))
+}
+
+/// An element takes a byte a row at least: a header that promises more would keep the reader busy for ever.
+fn check_size(path: &Path, element: &ElementDef, bytes: usize) -> Result<()> {
+    if element.properties.is_empty() {
+        let field = format!("element {}", shown(&element.name));
+        return Err(Error::input(path, None, field, "no property", "one at least"));
+    }
+    if element.count > bytes {
+        let field = format!("element {}", shown(&element.name));
+        return Err(Error::input(
+            path,
+            None,
+            field,
+            element.count.to_string(),
+            "as many rows as the file holds",
+        ));
+    }
+    Ok(())
+}
+
+/// A vertex while it is read; every other property is passed over.
+struct Vertex(Vector3<f64>);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self(Vector3::zeros())
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let coordinate = match name {
+            "x" => &mut self.0.x,
+            "y" => &mut self.0.y,
+            "z" => &mut self.0.z,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        match property {
+            Property::Float(value) => *coordinate = value.into(),
+            Property::Double(value) => *coordinate = value,
+            _ => return PropertyAccessResult::UnsupportedType,
+        }
+        PropertyAccessResult::Set
+    }
+}

@@ -1,0 +1,52 @@
+//! Names that carry their unit: `tx_m`, `areal_density_kg_m2`. A value in another unit is named, never converted.
+
+/// Unit suffixes, longest first, and their names.
+const UNITS: [(&str, &str); 25] = [
+    ("_g_m2", "grams per square metre"),
+    ("_kg_m2", "kilograms per square metre"),
+    ("_m_s2", "metres per second squared"),
+    ("_mm", "millimetres"),
+    ("_cm", "centimetres"),
+    ("_um", "micrometres"),
+    ("_km", "kilometres"),
+    ("_in", "inches"),
+    ("_m", "metres"),
+    ("_mn", "millinewtons"),
+    ("_cn", "centinewtons"),
+    ("_kn", "kilonewtons"),
+    ("_gf", "grams-force"),
+    ("_lbf", "pounds-force"),
+    ("_n", "newtons"),
+    ("_ms", "milliseconds"),
+    ("_min", "minutes"),
+    ("_h", "hours"),
+    ("_s", "seconds"),
+    ("_g", "grams"),
+    ("_mg", "milligrams"),
+    ("_kg", "kilograms"),
+    ("_deg", "degrees"),
+    ("_rad", "radians"),
+    ("_percent", "percent"),
+];
+
+/// Splits `tx_mm` into the quantity `tx` and the unit "millimetres".
+fn split(name: &str) -> (&str, Option<&'static str>) {
+    UNITS
+        .iter()
+        .find_map(|&(suffix, unit)| Some((name.strip_suffix(suffix)?, Some(unit))))
+        .unwrap_or((name, None))
+}
+
+/// True if the names differ in their units only.
+pub(super) fn same_quantity(found: &str, expected: &str) -> bool {
+    split(&found.to_lowercase()).0 == split(expected).0
+}
+
+/// What to do about a name in the wrong unit, or without one.
+pub(super) fn conversion(found: &str, expected: &str) -> String {
+    match (split(&found.to_lowercase()).1, split(expected).1) {
+        (Some(from), Some(to)) if from != to => format!("convert {from} to {to}"),
+        (None, Some(to)) => format!("the values in {to}, the unit in the name"),
+        _ => "the name exactly so".into(),
+    }
+}

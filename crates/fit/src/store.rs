@@ -1,0 +1,171 @@
+//! Writing that is never seen half done: into a temporary neighbour first, then renamed into place.
+//!
+//! Whatever stops the program, the path holds the old content or the new one. A hidden temporary neighbour may stay
+//! behind if the program is killed.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Writes a whole file, replacing the old one if there is one.
+///
+/// # Errors
+/// The path names something that is not a regular file, or the operating system refuses.
+pub fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
+    let target = existing_target(path)?;
+    if target.as_ref().is_some_and(|target| !target.is_file()) {
+        return Err(Error::input(
+            path,
+            None,
+            "file",
+            "something else",
+            "a regular file to replace, or nothing",
+        ));
+    }
+    let target = target.unwrap_or_else(|| path.to_path_buf());
+    let folder = parent(&target);
+    let failed = |source| Error::io(path, source);
+    let mut temporary = temporary(0o666).tempfile_in(&folder).map_err(failed)?;
+    temporary.write_all(contents).map_err(failed)?;
+    temporary.as_file().sync_all().map_err(failed)?;
+    temporary.persist(&target).map_err(|error| Error::io(path, error.error))?;
+    sync_folder(&folder)
+}
+
+/// Builds a whole folder in a temporary neighbour, then puts it in the place of the old one, which is deleted.
+///
+/// If `build` fails, the temporary folder is removed and the old one stays as it was.
+///
+/// # Errors
+/// Those of `build`; the path names something that is not a folder; the operating system refuses.
+pub fn replace_folder(path: &Path, build: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    let old = existing_target(path)?;
+    if old.as_ref().is_some_and(|old| !old.is_dir()) {
+        return Err(Error::input(path, None, "folder", "something else", "a folder to replace, or nothing"));
+    }
+    let target = old.clone().unwrap_or_else(|| path.to_path_buf());
+    let folder = parent(&target);
+    let failed = |source| Error::io(path, source);
+    let mut temporary = temporary(0o777).tempdir_in(&folder).map_err(failed)?;
+    build(temporary.path())?;
+    sync_folder(temporary.path())?;
+    if old.is_some() {
+        // The temporary name then holds the old folder, and is removed when it goes out of scope.
+        exchange(temporary.path(), &target).map_err(failed)?;
+    } else {
+        fs::rename(temporary.path(), &target).map_err(failed)?;
+        temporary.disable_cleanup(true);
+    }
+    sync_folder(&folder)
+}
+
+/// Where the path leads, links followed; `None` if nothing is there.
+fn existing_target(path: &Path) -> Result<Option<PathBuf>> {
+    match fs::canonicalize(path) {
+        Ok(target) => Ok(Some(target)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Error::io(path, error)),
+    }
+}
+
+fn parent(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// Hidden, and with the usual permissions: `mode` less what the user's mask takes away.
+fn temporary(mode: u32) -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
+    #[cfg(not(unix))]
+    let _ = mode;
+    builder
+}
+
+/// Makes names in a folder survive a power cut. Only Unix can open a folder for that.
+fn sync_folder(folder: &Path) -> Result<()> {
+    if cfg!(unix) {
+        File::open(folder).and_then(|file| file.sync_all()).map_err(|source| Error::io(folder, source))?;
+    }
+    Ok(())
+}
+
+/// Swaps two folders, in one step where the system can.
+fn exchange(new: &Path, old: &Path) -> std::io::Result<()> {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::fs::{CWD, RenameFlags, renameat_with};
+        use rustix::io::Errno;
+        match renameat_with(CWD, new, CWD, old, RenameFlags::EXCHANGE) {
+            // Some network file systems cannot.
+            Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => {}
+            done => return Ok(done?),
+        }
+    }
+    let aside = new.with_extension("old");
+    fs::rename(old, &aside)?;
+    if let Err(error) = fs::rename(new, old) {
+        fs::rename(&aside, old)?;
+        return Err(error);
+    }
+    fs::rename(&aside, new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_is_created_and_replaced_and_nothing_else_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("curve.csv");
+        for contents in ["old", "new"] {
+            write_file(&path, contents.as_bytes()).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), contents);
+        }
+        assert_eq!(names(folder.path()), ["curve.csv"]);
+        let inside = folder.path().join("absent").join("curve.csv");
+        assert!(matches!(write_file(&inside, b""), Err(Error::Io { .. })));
+        assert!(matches!(write_file(folder.path(), b""), Err(Error::Input { .. })));
+    }
+
+    #[test]
+    fn a_folder_is_created_and_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("set");
+        for name in ["old", "new"] {
+            replace_folder(&path, |temporary| write_file(&temporary.join(name), b"1")).unwrap();
+            assert_eq!(names(&path), [name]);
+        }
+        assert_eq!(names(folder.path()), ["set"]);
+    }
+
+    #[test]
+    fn a_failed_build_leaves_the_old_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("set");
+        replace_folder(&path, |temporary| write_file(&temporary.join("old"), b"1")).unwrap();
+        let failed = replace_folder(&path, |temporary| {
+            write_file(&temporary.join("new"), b"1")?;
+            Err(Error::input(temporary, None, "anything", "this", "that"))
+        });
+        assert!(failed.is_err());
+        assert_eq!((names(folder.path()), names(&path)), (vec!["set".into()], vec!["old".into()]));
+        let file = path.join("old");
+        assert!(matches!(replace_folder(&file, |_| Ok(())), Err(Error::Input { .. })));
+    }
+}
