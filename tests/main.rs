@@ -1,1 +1,6 @@
 //! Tests across the crates.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod closed_form;
+mod recovery;

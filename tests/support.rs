@@ -1,1 +1,95 @@
 //! What several tests share.
+
+use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
+use cloth_fit::report::Sample;
+use cloth_sim::material::Model;
+use cloth_sim::mesh::{Diagonals, Grid};
+use nalgebra::{Isometry3, Vector3};
+
+/// Uniform stretch of a 100 mm square along weft, without shapes: four vertices, two bars, and forces of a known law.
+pub struct UniformStretch<'a> {
+    /// The model whose strain the law is over.
+    pub model: Model,
+    /// Stress over strain, N/m.
+    pub law: &'a dyn Fn(f64) -> f64,
+    /// Largest strain.
+    pub largest: f64,
+    /// Frames.
+    pub frames: usize,
+    /// Noise to add to each force component, N; also told to the fit.
+    pub noise: Option<(f64, &'a mut dyn FnMut() -> f64)>,
+}
+
+impl UniformStretch<'_> {
+    /// The measurement set.
+    pub fn measure(self) -> MeasurementSet {
+        let side = 0.1;
+        let grid = Grid { columns: 2, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
+        let noise = self.noise.as_ref().map(|(force, _)| Noise { position_m: None, force_n: Some(*force) });
+        let mut draw = self.noise;
+        let mut noisy = |force: Vector3<f64>| match &mut draw {
+            Some((deviation, normal)) => force + Vector3::from_fn(|_, _| *deviation * normal()),
+            None => force,
+        };
+        let frames = (0..=self.frames)
+            .map(|index| {
+                let strain = self.largest * index as f64 / self.frames as f64;
+                let (stretch, factor) = match self.model {
+                    Model::Stvk => ((1.0 + 2.0 * strain).sqrt(), (1.0 + 2.0 * strain).sqrt()),
+                    Model::SoftConstraint | Model::Springs => (1.0 + strain, 1.0),
+                };
+                let force = Vector3::x() * ((self.law)(strain) * factor * side);
+                let cords = if index == 0 { vec![] } else { vec![cord(0, noisy(-force)), cord(1, noisy(force))] };
+                Frame {
+                    poses: vec![Isometry3::identity(), Isometry3::translation(side * (stretch - 1.0), 0.0, 0.0)],
+                    cords,
+                    ..Frame::default()
+                }
+            })
+            .collect();
+        let clip = |name: &str, vertices| Clip { name: name.into(), mass_kg: 0.0, vertices };
+        MeasurementSet {
+            fabric: Fabric {
+                name: "closed form".into(),
+                width_m: side,
+                height_m: side,
+                areal_density_kg_m2: 0.2,
+                thickness_m: None,
+                source: None,
+                notes: None,
+            },
+            sequences: vec![Sequence {
+                name: "stretch-weft".into(),
+                kind: Kind::StretchWeft,
+                gravity: Vector3::zeros(),
+                noise,
+                force_direction: None,
+                table: None,
+                mesh: grid.mesh().expect("two by two nodes make a grid"),
+                clips: vec![clip("low", vec![0, 2]), clip("high", vec![1, 3])],
+                frames,
+            }],
+        }
+    }
+}
+
+fn cord(clip: usize, force: Vector3<f64>) -> Cord {
+    Cord { clip, force, point: None }
+}
+
+/// Relative L2 error of the stress over the visited range.
+pub fn stress_error(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
+    let square = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(|sample| f(sample).powi(2)).sum::<f64>();
+    (square(&|s| s.stress - truth(s.strain)) / square(&|s| truth(s.strain))).sqrt()
+}
+
+/// Share of the rows whose 95 % band holds the truth.
+pub fn coverage(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
+    let inside = |sample: &&Sample| {
+        let stress = truth(sample.strain);
+        // Both are zero at zero strain, to rounding.
+        let slack = 1e-12 * (1.0 + stress.abs());
+        sample.band.is_some_and(|[low, high]| low - slack <= stress && stress <= high + slack)
+    };
+    samples.iter().filter(inside).count() as f64 / samples.len() as f64
+}

@@ -2,7 +2,15 @@
 
 pub mod error;
 pub mod frame;
+pub mod gap;
+pub mod gauss_newton;
 pub mod io;
+pub mod least_squares;
 pub mod replica;
+pub mod rig;
+pub mod report;
+pub mod simulation;
 pub mod specimen;
+pub mod stage;
 pub mod store;
+pub mod uncertainty;

@@ -18,6 +18,7 @@ use cloth_sim::equilibrium::{Settings, Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Mutex;
 
@@ -141,6 +142,38 @@ impl<'a> Simulation<'a> {
     /// The curve of the last evaluation.
     pub fn curve(&self) -> &StiffnessCurve {
         &self.curve
+    }
+
+    /// Number of measured force components of all frames in use.
+    pub fn measurements(&self) -> usize {
+        self.frames().map(|(_, frame, _)| frame.forces.len()).sum()
+    }
+
+    /// True if the noise of every sequence is known: residuals then are in units of it.
+    pub fn noise_is_known(&self) -> bool {
+        self.replicas.iter().all(|replica| replica.force_noise.is_some())
+    }
+
+    /// What the residuals of each replica are divided by, N.
+    pub fn scales(&self) -> Vec<f64> {
+        let known = self.noise_is_known();
+        let scale = |replica: &Replica| replica.force_noise.filter(|_| known).unwrap_or(1.0);
+        self.replicas.iter().map(scale).collect()
+    }
+
+    /// Indices of residuals that follow one another: one force component of one clip through a sequence.
+    pub fn tracks(&self) -> Vec<Vec<usize>> {
+        let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
+        let mut index = 0;
+        for &(replica, frame) in &self.frames {
+            let forces = &self.replicas[replica].frames[frame].forces;
+            for (place, force) in forces.iter().enumerate() {
+                let first = forces.iter().position(|other| other.clip == force.clip).unwrap_or(0);
+                tracks.entry((replica, force.clip, place - first)).or_default().push(index);
+                index += 1;
+            }
+        }
+        tracks.into_values().collect()
     }
 
     /// What was spent so far.
@@ -287,7 +320,7 @@ impl<'a> Simulation<'a> {
 impl Residuals for Simulation<'_> {
     type Error = Infallible;
 
-    /// Residuals of all measured force components, N, frame by frame.
+    /// Residuals of all measured force components, frame by frame, in units of the noise where that is known, else N.
     fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
         let failed = |reason: String| Ok(Evaluation::Failed { reason });
         let curve = match self.curve.with_stiffnesses(point.iter().copied().collect()) {
@@ -306,11 +339,15 @@ impl Residuals for Simulation<'_> {
             ));
         }
         let points = point.len();
-        let measured = self.frames.iter().flat_map(|&(replica, frame)| &self.replicas[replica].frames[frame].forces);
-        let simulated = results.iter().flat_map(|result| &result.forces);
-        let residual: Vec<f64> = measured.zip(simulated).map(|(measured, simulated)| measured.force - simulated).collect();
+        let scales = self.scales();
+        let (mut residual, mut derivatives) = (Vec::new(), Vec::new());
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let measured = &self.replicas[replica].frames[frame].forces;
+            let scale = scales[replica];
+            residual.extend(measured.iter().zip(&result.forces).map(|(m, simulated)| (m.force - simulated) / scale));
+            derivatives.extend(result.derivatives.iter().map(|derivative| derivative / scale));
+        }
         let rows = residual.len();
-        let derivatives: Vec<f64> = results.iter().flat_map(|result| result.derivatives.iter().copied()).collect();
         self.states = results.into_iter().map(|result| result.state).collect();
         self.curve = curve;
         Ok(Evaluation::Values {

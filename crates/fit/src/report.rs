@@ -1,0 +1,136 @@
+//! What a fit found, as plain data: nothing here computes.
+
+use crate::frame::Kind;
+use crate::gauss_newton::Iteration;
+use crate::simulation::{Counters, DroppedFrame};
+use crate::uncertainty::Scatter;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::{Component, Model};
+
+/// A fitted curve with its uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveReport {
+    /// Which component.
+    pub component: Component,
+    /// The curve.
+    pub curve: StiffnessCurve,
+    /// Standard deviation of each control value; `None` where no frame sees it.
+    pub deviations: Vec<Option<f64>>,
+    /// The strains that the measurement visited: from 0, or from the smallest where that is negative.
+    pub visited: [f64; 2],
+    /// 201 rows over the visited range.
+    pub samples: Vec<Sample>,
+    /// How many directions of the control values the data see.
+    pub rank: usize,
+    /// Control points that no frame sees.
+    pub unseen: Vec<usize>,
+    /// Control values correlated above 0.95.
+    pub correlated: Vec<(usize, usize, f64)>,
+    /// How many of the curve's constraints hold the solution.
+    pub active_constraints: usize,
+}
+
+/// One row of a curve file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Strain.
+    pub strain: f64,
+    /// σ/ε, N/m.
+    pub stiffness: f64,
+    /// σ, N/m.
+    pub stress: f64,
+    /// 95 % band of the stress, N/m; `None` where no frame sees it.
+    pub band: Option<[f64; 2]>,
+}
+
+/// How a sequence was met.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SequenceReport {
+    /// Name of the sequence.
+    pub name: String,
+    /// Which test it is.
+    pub kind: Kind,
+    /// Frames used.
+    pub frames: usize,
+    /// Frames left out because nothing was stretched, or no force measured.
+    pub at_rest: usize,
+    /// Two unknowns a node.
+    pub planar: bool,
+    /// Columns and rows of nodes.
+    pub nodes: [usize; 2],
+    /// Root mean square of measured − simulated over all measured force components, N.
+    pub force_rms: f64,
+    /// Largest measured force component, N.
+    pub force_largest: f64,
+    /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
+    pub position_rms: Option<f64>,
+    /// Measured stiffness on loading and on unloading, as multiples of the curve's.
+    pub hysteresis: Option<Hysteresis>,
+    /// Every force component of every frame.
+    pub forces: Vec<ForceRow>,
+}
+
+/// Loading against unloading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hysteresis {
+    /// Stiffness on loading over the curve's.
+    pub loading: f64,
+    /// Stiffness on unloading over the curve's.
+    pub unloading: f64,
+}
+
+/// One measured force component and its simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceRow {
+    /// Index of the frame in its sequence.
+    pub frame: usize,
+    /// Index of the clip.
+    pub clip: usize,
+    /// Mean relative change of distance between the clips.
+    pub extension: f64,
+    /// Measured, N.
+    pub measured: f64,
+    /// Simulated, N.
+    pub simulated: f64,
+}
+
+/// A fit with a certain number of control points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// Control points.
+    pub points: usize,
+    /// Root mean square residual, N (in units of the noise where that is known for all sequences).
+    pub rms: f64,
+    /// Why it stopped.
+    pub status: String,
+    /// Its iterations.
+    pub iterations: Vec<Iteration>,
+}
+
+/// A stage of the fit: one component.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageReport {
+    /// Which component was fitted.
+    pub component: Component,
+    /// With which model.
+    pub model: Model,
+    /// The curve.
+    pub curve: CurveReport,
+    /// Noise and misfit, N.
+    pub scatter: Scatter,
+    /// How each sequence was met.
+    pub sequences: Vec<SequenceReport>,
+    /// Frames whose equilibrium was not found at the start.
+    pub dropped: Vec<DroppedFrame>,
+    /// The levels of the curve's growth.
+    pub levels: Vec<Level>,
+    /// Why the growth ended.
+    pub growth: String,
+    /// Every level came to its minimum.
+    pub converged: bool,
+    /// What was spent.
+    pub counters: Counters,
+    /// Wall time, s.
+    pub seconds: f64,
+}

@@ -1,0 +1,275 @@
+//! How sure a fitted curve is: noise told apart from misfit, covariance of the control values, bands on the stress.
+//!
+//! ```text
+//! C = [σ² + (s² − σ²) n/p] (JᵀJ)⁻¹        band of σ(ε):  ± t √(wᵀ C w),   w = ∂σ/∂k
+//! ```
+//!
+//! σ² is the noise of a measurement, s² = ‖r‖²/(n − p) what is left of n measurements after p parameters. Noise errs
+//! afresh in every measurement, so it averages out. Misfit (a curve with too few points, hysteresis, a wrong model) errs
+//! alike in neighbours: n measurements then tell no more than p, and the factor n/p says so. It enters only where s² is
+//! above σ² beyond doubt (99 %).
+
+use nalgebra::{DMatrix, DVector};
+
+/// Relative size of a singular value below which the data do not see its direction.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// Standard normal quantiles of 97.5 % and 99 %.
+const Z_975: f64 = 1.959_963_985;
+const Z_99: f64 = 2.326_347_874;
+
+/// Noise and misfit of a fit, in the units of its residuals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scatter {
+    /// Standard deviation of one measurement.
+    pub noise: f64,
+    /// The noise was given; otherwise it was estimated from differences between successive residuals.
+    pub known: bool,
+    /// s, root mean square of the residual per degree of freedom.
+    pub residual: f64,
+    /// Misfit √(s² − σ²) where it exceeds the noise beyond doubt, else 0.
+    pub misfit: f64,
+    /// Measurements that a parameter can move.
+    pub measurements: usize,
+    /// Measurements less parameters.
+    pub freedom: usize,
+}
+
+impl Scatter {
+    /// Judges the residuals of a fit.
+    ///
+    /// * `residual` — one entry a measurement
+    /// * `jacobian` — its rows; rows of zeros say nothing and are left out
+    /// * `tracks` — which measurements follow one another, in order
+    /// * `known` — the noise, if it was given
+    pub fn new(
+        residual: &DVector<f64>,
+        jacobian: &DMatrix<f64>,
+        rank: usize,
+        tracks: &[Vec<usize>],
+        known: Option<f64>,
+    ) -> Self {
+        let largest = jacobian.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
+        let informative: Vec<bool> = jacobian.row_iter().map(|row| row.norm() > 1e-9 * largest).collect();
+        let measurements = informative.iter().filter(|&&seen| seen).count();
+        let freedom = measurements.saturating_sub(rank);
+        let square = |i: usize| residual[i] * residual[i];
+        let sum: f64 = (0..residual.len()).filter(|&i| informative[i]).map(square).sum();
+        let mean_square = sum / freedom.max(1) as f64;
+        let variance = known.map_or_else(|| successive_variance(residual, tracks, &informative), |noise| noise * noise);
+        let exceeds = freedom > 0 && match known {
+            Some(_) => sum > chi_square_99(freedom as f64) * variance,
+            None => {
+                // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
+                let n = measurements as f64;
+                1.0 - variance / mean_square > Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()
+            }
+        };
+        // Noise that was estimated cannot exceed what is left.
+        let variance = if known.is_none() && !exceeds { mean_square } else { variance };
+        let misfit = if exceeds { (mean_square - variance).max(0.0).sqrt() } else { 0.0 };
+        Self {
+            noise: variance.sqrt(),
+            known: known.is_some(),
+            residual: mean_square.sqrt(),
+            misfit,
+            measurements,
+            freedom,
+        }
+    }
+}
+
+/// Variance from differences of neighbours, in which a smooth misfit cancels.
+fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informative: &[bool]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0usize);
+    for track in tracks {
+        let seen: Vec<usize> = track.iter().copied().filter(|&i| informative[i]).collect();
+        for pair in seen.windows(2) {
+            sum += (residual[pair[1]] - residual[pair[0]]).powi(2);
+            count += 1;
+        }
+    }
+    sum / (2.0 * count.max(1) as f64)
+}
+
+/// 99 % quantile of the χ² distribution (Wilson and Hilferty 1931).
+fn chi_square_99(freedom: f64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    freedom * (1.0 - spread + Z_99 * spread.sqrt()).powi(3)
+}
+
+/// 97.5 % quantile of Student's t (Cornish–Fisher expansion; within 1 % from 3 degrees of freedom on).
+fn student_975(freedom: f64) -> f64 {
+    let z = Z_975;
+    let z2 = z * z;
+    let terms = [
+        z * (z2 + 1.0) / 4.0,
+        z * ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0,
+        z * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0,
+    ];
+    z + terms[0] / freedom + terms[1] / freedom.powi(2) + terms[2] / freedom.powi(3)
+}
+
+/// What the data say of the control values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Covariance {
+    /// Covariance of the control values, over what the data see.
+    pub matrix: DMatrix<f64>,
+    /// How many directions the data see.
+    pub rank: usize,
+    /// Directions that they do not see, as columns.
+    pub unseen: DMatrix<f64>,
+    /// Standard deviations to either side of a 95 % band.
+    quantile: f64,
+}
+
+impl Covariance {
+    /// Rank of a Jacobian, by the singular values of its scaled columns.
+    pub fn rank_of(jacobian: &DMatrix<f64>) -> usize {
+        let (scaled, _) = scale_columns(jacobian);
+        let values = scaled.singular_values();
+        values.iter().filter(|&&value| value > RANK_TOLERANCE * values.max()).count()
+    }
+
+    /// The covariance of control values fitted with this Jacobian.
+    pub fn new(jacobian: &DMatrix<f64>, scatter: &Scatter) -> Self {
+        let parameters = jacobian.ncols();
+        let (scaled, norms) = scale_columns(jacobian);
+        // The Gram matrix is small; its eigenvalues are the squared singular values of columns of unit length, and what
+        // lies below 1e-10 of them is not seen at the precision of any instrument.
+        let gram = (scaled.transpose() * &scaled).symmetric_eigen();
+        let largest = gram.eigenvalues.max();
+        let seen = |i: usize| gram.eigenvalues[i] > RANK_TOLERANCE * largest;
+        let rank = (0..parameters).filter(|&i| seen(i)).count();
+        let excess = scatter.misfit.powi(2) * scatter.measurements as f64 / rank.max(1) as f64;
+        let variance = scatter.noise.powi(2) + excess;
+        let mut matrix = DMatrix::zeros(parameters, parameters);
+        let mut unseen = Vec::new();
+        for i in 0..parameters {
+            let direction = gram.eigenvectors.column(i).component_div(&norms);
+            if seen(i) {
+                matrix += &direction * direction.transpose() * (variance / gram.eigenvalues[i]);
+            } else {
+                unseen.push(direction.normalize());
+            }
+        }
+        let unseen =
+            if unseen.is_empty() { DMatrix::zeros(parameters, 0) } else { DMatrix::from_columns(&unseen) };
+        let quantile = if scatter.known { Z_975 } else { student_975(scatter.freedom.max(1) as f64) };
+        Self { matrix, rank, unseen, quantile }
+    }
+
+    /// Half the width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it.
+    pub fn half_band(&self, weights: &DVector<f64>) -> Option<f64> {
+        let hidden = (self.unseen.transpose() * weights).norm();
+        if hidden > 1e-6 * weights.norm() {
+            return None;
+        }
+        Some(self.quantile * (weights.transpose() * &self.matrix * weights)[0].max(0.0).sqrt())
+    }
+
+    /// Standard deviation of each control value; `None` for one that the data do not see.
+    pub fn standard_deviations(&self) -> Vec<Option<f64>> {
+        (0..self.matrix.ncols())
+            .map(|i| (self.unseen.row(i).norm() <= 1e-6).then(|| self.matrix[(i, i)].max(0.0).sqrt()))
+            .collect()
+    }
+
+    /// Pairs of control values whose correlation exceeds 0.95 in size.
+    pub fn correlated(&self) -> Vec<(usize, usize, f64)> {
+        let mut pairs = Vec::new();
+        for j in 0..self.matrix.ncols() {
+            for i in 0..j {
+                let correlation = self.matrix[(i, j)] / (self.matrix[(i, i)] * self.matrix[(j, j)]).sqrt();
+                if correlation.abs() > 0.95 {
+                    pairs.push((i, j, correlation));
+                }
+            }
+        }
+        pairs
+    }
+}
+
+/// Columns of unit length, and their lengths; a zero column stays.
+fn scale_columns(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let norms = DVector::from_iterator(
+        jacobian.ncols(),
+        jacobian.column_iter().map(|column| match column.norm() {
+            0.0 => 1.0,
+            norm => norm,
+        }),
+    );
+    let mut scaled = jacobian.clone();
+    scaled.column_iter_mut().zip(norms.iter()).for_each(|(mut column, norm)| column /= *norm);
+    (scaled, norms)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{SeedableRng, rngs::StdRng};
+    use rand_distr::{Distribution, StandardNormal};
+
+    fn white(rng: &mut StdRng, n: usize, noise: f64) -> DVector<f64> {
+        DVector::from_fn(n, |_, _| {
+            let sample: f64 = StandardNormal.sample(rng);
+            noise * sample
+        })
+    }
+
+    fn line(n: usize) -> (DMatrix<f64>, Vec<Vec<usize>>) {
+        (DMatrix::from_fn(n, 2, |i, j| (i as f64 / n as f64).powi(j as i32)), vec![(0..n).collect()])
+    }
+
+    #[test]
+    fn white_noise_is_no_misfit_and_its_estimate_is_right() {
+        let mut rng = StdRng::seed_from_u64(4);
+        let (jacobian, tracks) = line(60);
+        let (mut flagged, mut sum) = (0, 0.0);
+        for _ in 0..400 {
+            let noise = white(&mut rng, 60, 0.2);
+            let fit = jacobian.clone().svd(true, true).solve(&noise, 1e-12).unwrap();
+            let residual = &noise - &jacobian * fit;
+            let known = Scatter::new(&residual, &jacobian, 2, &tracks, Some(0.2));
+            let estimated = Scatter::new(&residual, &jacobian, 2, &tracks, None);
+            flagged += usize::from(known.misfit > 0.0) + usize::from(estimated.misfit > 0.0);
+            sum += estimated.noise / 400.0;
+        }
+        assert!(flagged <= 800 * 3 / 100, "{flagged}");
+        assert!((sum - 0.2).abs() < 0.01, "{sum}");
+    }
+
+    #[test]
+    fn a_smooth_misfit_is_seen_beside_the_noise() {
+        let mut rng = StdRng::seed_from_u64(5);
+        let (jacobian, tracks) = line(60);
+        let residual = white(&mut rng, 60, 0.01) + DVector::from_fn(60, |i, _| 0.1 * (i as f64 * 0.3).sin());
+        for known in [Some(0.01), None] {
+            let scatter = Scatter::new(&residual, &jacobian, 2, &tracks, known);
+            assert!((scatter.misfit - 0.07).abs() < 0.01, "{scatter:?}");
+            assert!(scatter.noise < 0.03, "{scatter:?}");
+        }
+    }
+
+    #[test]
+    fn what_no_measurement_sees_has_no_band() {
+        let jacobian = DMatrix::from_row_slice(3, 3, &[1.0, 2.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 3.0]);
+        let scatter = Scatter { noise: 1.0, known: true, residual: 1.0, misfit: 0.0, measurements: 3, freedom: 1 };
+        let covariance = Covariance::new(&jacobian, &scatter);
+        assert_eq!((covariance.rank, Covariance::rank_of(&jacobian)), (2, 2));
+        assert_eq!(covariance.half_band(&DVector::from_vec(vec![1.0, 0.0, 0.0])), None);
+        let seen = covariance.half_band(&DVector::from_vec(vec![0.0, 0.0, 1.0])).unwrap();
+        assert!((seen - Z_975 / 3.0).abs() < 1e-9);
+        assert!(covariance.half_band(&DVector::from_vec(vec![1.0, 2.0, 0.0])).is_some());
+    }
+
+    #[test]
+    fn quantiles_match_tables() {
+        for (freedom, t) in [(3.0, 3.182), (5.0, 2.571), (10.0, 2.228), (30.0, 2.042)] {
+            assert!((student_975(freedom) / t - 1.0).abs() < 0.01);
+        }
+        for (freedom, chi) in [(5.0, 15.086), (20.0, 37.566), (100.0, 135.807)] {
+            assert!((chi_square_99(freedom) / chi - 1.0).abs() < 0.01);
+        }
+    }
+}
