@@ -12,7 +12,8 @@
 
 use cloth_fit::frame::MeasurementSet;
 use cloth_fit::report::StageReport;
-use cloth_fit::stage::stretch::{Settings, fit};
+use cloth_fit::stage::stretch::fit;
+use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::{UniformStretch, coverage, stress_error};
@@ -32,7 +33,7 @@ const FORCE_NOISE: f64 = 3e-3;
 
 fn fit_weft(set: &MeasurementSet, model: Model, nodes: [usize; 2]) -> StageReport {
     let settings = Settings { model, nodes: Some(nodes), ..Settings::default() };
-    fit(set, Component::StretchWeft, &settings, &mut |_| ()).unwrap().unwrap()
+    fit(set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap()
 }
 
 fn measure(model: Model, law: &dyn Fn(f64) -> f64, largest: f64, seed: Option<u64>) -> MeasurementSet {
@@ -55,7 +56,11 @@ fn five_points_meet_laws_that_are_no_spline() {
                 // What five points cannot do shows as misfit above the noise, and the band holds it.
                 if seed.is_some() && report.scatter.misfit > 0.0 {
                     let held = coverage(&report.curve.samples, &law);
-                    println!("    misfit {:.1e} N above {FORCE_NOISE} N; band holds {:.0} %", report.scatter.misfit, 100.0 * held);
+                    println!(
+                        "    misfit {:.1e} N above {FORCE_NOISE} N; band holds {:.0} %",
+                        report.scatter.misfit,
+                        100.0 * held
+                    );
                     assert!(held >= 0.85, "{name} {model}: {held}");
                 }
             }
@@ -76,7 +81,10 @@ fn mean_coverage(seeds: u64, nodes: [usize; 2]) -> f64 {
             coverage(&report.curve.samples, &law)
         })
         .sum();
-    println!("{seeds} seeds: the band holds the truth in {:.1} %; misfit seen in {flagged}", 100.0 * sum / seeds as f64);
+    println!(
+        "{seeds} seeds: the band holds the truth in {:.1} %; misfit seen in {flagged}",
+        100.0 * sum / seeds as f64
+    );
     sum / seeds as f64
 }
 

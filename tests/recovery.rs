@@ -1,7 +1,8 @@
 //! Simulate known curves, add noise, fit, compare.
 
 use cloth_fit::rig::{KnownFabric, Rig};
-use cloth_fit::stage::stretch::{Settings, fit};
+use cloth_fit::stage::stretch::fit;
+use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
 use std::path::Path;
 
@@ -14,14 +15,38 @@ fn denim() {
         for model in Model::ALL {
             for component in [Component::StretchWeft, Component::StretchWarp] {
                 let settings = Settings { model, ..Settings::default() };
-                let report = fit(&set, component, &settings, &mut |_| ()).unwrap().unwrap();
-                println!("{model} {component} noise {noise}: {:?} {:?}", report.curve.curve.stiffnesses(), report.curve.visited);
+                let report = fit(&set, component, &settings, &mut Watch::default()).unwrap().unwrap();
+                println!(
+                    "{model} {component} noise {noise}: {:?} {:?}",
+                    report.curve.curve.stiffnesses(),
+                    report.curve.visited
+                );
                 for level in &report.levels {
-                    println!("   {} points rms {:.3e} {} iterations {}", level.points, level.rms, level.iterations.len(), level.status);
+                    println!(
+                        "   {} points rms {:.3e} {} iterations {}",
+                        level.points,
+                        level.rms,
+                        level.iterations.len(),
+                        level.status
+                    );
                 }
-                println!("   {:?} {:?} {:.3} s; {}", report.scatter, report.counters, report.seconds, report.growth);
+                println!(
+                    "   {:?} {:?} {:.3} s; {}",
+                    report.scatter, report.counters, report.seconds, report.growth
+                );
                 for s in &report.sequences {
-                    println!("   {} frames {} rest {} planar {} nodes {:?} rms {:.3e} of {:.3} pos {:?} hyst {:?}", s.name, s.frames, s.at_rest, s.planar, s.nodes, s.force_rms, s.force_largest, s.position_rms, s.hysteresis);
+                    println!(
+                        "   {} frames {} rest {} planar {} nodes {:?} rms {:.3e} of {:.3} pos {:?} hyst {:?}",
+                        s.name,
+                        s.frames,
+                        s.at_rest,
+                        s.planar,
+                        s.nodes,
+                        s.force_rms,
+                        s.force_largest,
+                        s.position_rms,
+                        s.hysteresis
+                    );
                 }
                 if model == Model::Stvk {
                     let truth = fabric.curves().unwrap();
@@ -30,7 +55,11 @@ fn denim() {
                     for s in &report.curve.samples {
                         e += (s.stress - truth.stress(s.strain)).powi(2);
                         t += truth.stress(s.strain).powi(2);
-                        if let Some([l, h]) = s.band { if truth.stress(s.strain) >= l && truth.stress(s.strain) <= h { inside += 1; } }
+                        if let Some([l, h]) = s.band {
+                            if truth.stress(s.strain) >= l && truth.stress(s.strain) <= h {
+                                inside += 1;
+                            }
+                        }
                     }
                     println!("   error {:.4} %, inside {inside}", 100.0 * (e / t).sqrt());
                 }

@@ -39,9 +39,13 @@ impl UniformStretch<'_> {
                     Model::SoftConstraint | Model::Springs => (1.0 + strain, 1.0),
                 };
                 let force = Vector3::x() * ((self.law)(strain) * factor * side);
-                let cords = if index == 0 { vec![] } else { vec![cord(0, noisy(-force)), cord(1, noisy(force))] };
+                let cords =
+                    if index == 0 { vec![] } else { vec![cord(0, noisy(-force)), cord(1, noisy(force))] };
                 Frame {
-                    poses: vec![Isometry3::identity(), Isometry3::translation(side * (stretch - 1.0), 0.0, 0.0)],
+                    poses: vec![
+                        Isometry3::identity(),
+                        Isometry3::translation(side * (stretch - 1.0), 0.0, 0.0),
+                    ],
                     cords,
                     ..Frame::default()
                 }

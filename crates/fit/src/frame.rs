@@ -199,6 +199,9 @@ impl MeshPoint {
     /// A vertex without weight does not enter, so that it may be unobserved.
     pub fn interpolate<const D: usize>(&self, mesh: &Mesh, values: &[SVector<f64, D>]) -> SVector<f64, D> {
         let corners = mesh.triangles[self.triangle].into_iter().zip(self.weights);
-        corners.filter(|(_, weight)| weight.abs() > 1e-9).map(|(vertex, weight)| values[vertex] * weight).sum()
+        corners
+            .filter(|(_, weight)| weight.abs() > 1e-9)
+            .map(|(vertex, weight)| values[vertex] * weight)
+            .sum()
     }
 }

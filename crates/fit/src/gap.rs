@@ -41,7 +41,9 @@ pub fn start(
             for force in &frame.forces {
                 let work = |column: &[f64]| -> f64 {
                     let nodes = column.chunks_exact(3).zip(&replica.fields[force.clip]);
-                    nodes.map(|(g, weight)| weight * (0..3).map(|i| g[i] * force.direction[i]).sum::<f64>()).sum()
+                    nodes
+                        .map(|(g, weight)| weight * (0..3).map(|i| g[i] * force.direction[i]).sum::<f64>())
+                        .sum()
                 };
                 rows.extend(columns.chunks_exact(gradient.len()).map(work));
                 target.push(force.force - work(&gradient));

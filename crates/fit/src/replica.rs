@@ -4,7 +4,7 @@
 //! Source: Miguel et al. 2012, §5.1. What is held, which frames are used and how shapes are blended: docs/model.md.
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Phase, Sequence};
+use crate::frame::{Frame, Kind, Phase, Sequence};
 use crate::specimen::Specimen;
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::load::Held;
@@ -19,6 +19,8 @@ const FLATTENING_STRAIN: f64 = 1e-5;
 pub struct Replica {
     /// Name of the sequence.
     pub name: String,
+    /// Which test it is.
+    pub kind: Kind,
     /// The grid.
     pub specimen: Specimen,
     /// The cloth.
@@ -92,7 +94,8 @@ impl Replica {
             .enumerate()
             .filter_map(|(node, clip)| clip.map(|clip| Held { node, clip: Some(clip) }))
             .collect();
-        let problem = Problem { mesh: &specimen.mesh, model, components, areal_density, gravity, held: &held, planar };
+        let problem =
+            Problem { mesh: &specimen.mesh, model, components, areal_density, gravity, held: &held, planar };
         let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
         let cloth = Cloth::new(&problem).map_err(mechanics)?;
         let extensions: Vec<f64> = starts.iter().map(|x| blend.extension(&specimen, x)).collect();
@@ -123,8 +126,8 @@ impl Replica {
         }
         let frames_at_rest = sequence.frames.len() - frames.len();
         let force_noise = sequence.noise.and_then(|noise| noise.force_n);
-        let (name, fields) = (sequence.name.clone(), blend.weights);
-        Ok(Self { name, specimen, cloth, fields, frames, frames_at_rest, planar, force_noise })
+        let (name, kind, fields) = (sequence.name.clone(), sequence.kind, blend.weights);
+        Ok(Self { name, kind, specimen, cloth, fields, frames, frames_at_rest, planar, force_noise })
     }
 
     /// Number of measured force components over all frames.
@@ -148,10 +151,10 @@ fn clamped_nodes(sequence: &Sequence, specimen: &Specimen) -> Result<Vec<Option<
     let mut clamped: Vec<Option<usize>> = vec![None; specimen.mesh.len()];
     for (clip, gripped) in sequence.clips.iter().enumerate() {
         let places = gripped.vertices.iter().map(|&v| specimen.place(&sequence.mesh.positions[v]).xy());
-        let (low, high) = places.fold(
-            (Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)),
-            |(low, high), p| (low.inf(&p), high.sup(&p)),
-        );
+        let (low, high) = places
+            .fold((Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)), |(low, high), p| {
+                (low.inf(&p), high.sup(&p))
+            });
         for (node, position) in specimen.mesh.positions.iter().enumerate() {
             let p = position.xy();
             let inside = p >= low - margin && p <= high + margin;
@@ -162,9 +165,8 @@ fn clamped_nodes(sequence: &Sequence, specimen: &Specimen) -> Result<Vec<Option<
                 None => clamped[node] = Some(clip),
                 Some(other) => {
                     let world = specimen.rest_in_world(node);
-                    let apart = |frame: &Frame| {
-                        (place(frame, clip, &world) - place(frame, other, &world)).norm()
-                    };
+                    let apart =
+                        |frame: &Frame| (place(frame, clip, &world) - place(frame, other, &world)).norm();
                     if let Some(frame) = sequence.frames.iter().position(|frame| apart(frame) > 1e-6) {
                         return Err(bad(
                             format!(
@@ -209,7 +211,11 @@ impl Blend {
                 let rest = specimen.rest_in_world(node);
                 let blended = self.weights.iter().enumerate().map(|(clip, weights)| {
                     // Skipped, not multiplied by zero: at a clip's own nodes the place is exact.
-                    if weights[node] == 0.0 { Vector3::zeros() } else { place(frame, clip, &rest) * weights[node] }
+                    if weights[node] == 0.0 {
+                        Vector3::zeros()
+                    } else {
+                        place(frame, clip, &rest) * weights[node]
+                    }
                 });
                 let p = specimen.place(&blended.sum());
                 [p.x, p.y, p.z]

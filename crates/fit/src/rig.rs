@@ -105,23 +105,38 @@ impl Rig {
     }
 
     fn validate(&self) -> Result<()> {
-        let setting = |field, found: String, expected: &str| Err(Error::Setting { field, found, expected: expected.into() });
+        let setting = |field, found: String, expected: &str| {
+            Err(Error::Setting { field, found, expected: expected.into() })
+        };
         for (field, [columns, rows]) in [("nodes", self.nodes), ("measured", self.measured)] {
             if columns.min(rows) < 3 || columns.max(rows) > 400 {
                 return setting(field, format!("{columns}x{rows}"), "3 to 400 nodes a side");
             }
         }
         if self.frames == 0 || self.cycles == 0 {
-            return setting("frames", format!("{} in {} cycles", self.frames, self.cycles), "at least one frame and cycle");
+            return setting(
+                "frames",
+                format!("{} in {} cycles", self.frames, self.cycles),
+                "at least one frame and cycle",
+            );
         }
         Ok(())
     }
 
     /// Two bars on opposite sides, pulled apart and let back.
-    fn stretch(&self, fabric: &KnownFabric, curves: &Curves, kind: Kind, random: &mut StdRng) -> Result<Sequence> {
+    fn stretch(
+        &self,
+        fabric: &KnownFabric,
+        curves: &Curves,
+        kind: Kind,
+        random: &mut StdRng,
+    ) -> Result<Sequence> {
         let along_weft = kind == Kind::StretchWeft;
-        let (component, direction) =
-            if along_weft { (Component::StretchWeft, Vector3::x()) } else { (Component::StretchWarp, Vector3::y()) };
+        let (component, direction) = if along_weft {
+            (Component::StretchWeft, Vector3::x())
+        } else {
+            (Component::StretchWarp, Vector3::y())
+        };
         let length = if along_weft { fabric.width_m } else { fabric.height_m };
         let largest = fabric.largest_extension(component)? * length;
         let grid = |[columns, rows]: [usize; 2], diagonals| Grid {
@@ -137,12 +152,18 @@ impl Rig {
             let at = |p: &Vector3<f64>| (p.dot(&direction) - place).abs() < 1e-9 * length;
             (0..positions.len()).filter(|&node| at(&positions[node])).collect()
         };
-        let clip = |name: &str, place| Clip { name: name.into(), mass_kg: BAR_MASS, vertices: end(place, &seen.positions) };
+        let clip = |name: &str, place| Clip {
+            name: name.into(),
+            mass_kg: BAR_MASS,
+            vertices: end(place, &seen.positions),
+        };
         let mut sequence = Sequence {
             name: kind.to_string(),
             kind,
             gravity: Vector3::zeros(),
-            noise: self.noise.then_some(Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE) }),
+            noise: self
+                .noise
+                .then_some(Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE) }),
             force_direction: None,
             table: None,
             clips: vec![clip("low", 0.0), clip("high", length)],
@@ -159,7 +180,8 @@ impl Rig {
             .enumerate()
             .flat_map(|(clip, nodes)| nodes.iter().map(move |&node| Held { node, clip: Some(clip) }))
             .collect();
-        let components: Vec<Component> = curves.components().filter(|component| !component.is_bending()).collect();
+        let components: Vec<Component> =
+            curves.components().filter(|component| !component.is_bending()).collect();
         let cloth = Cloth::new(&Problem {
             mesh: &specimen.mesh,
             model: fabric.model,
@@ -174,7 +196,8 @@ impl Rig {
         let settings = equilibrium::Settings::default();
         for (index, (share, cycle, phase)) in self.schedule().into_iter().enumerate() {
             let shift = direction * (0.5 * share * largest);
-            let poses = [-shift, shift].map(|shift| Isometry3::from_parts(Translation3::from(shift), UnitQuaternion::identity()));
+            let poses = [-shift, shift]
+                .map(|shift| Isometry3::from_parts(Translation3::from(shift), UnitQuaternion::identity()));
             let mut x: Vec<f64> = specimen
                 .mesh
                 .positions

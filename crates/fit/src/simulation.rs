@@ -14,13 +14,14 @@
 use crate::gauss_newton::{Evaluation, Residuals};
 use crate::replica::{Replica, ReplicaFrame};
 use cloth_sim::curve::StiffnessCurve;
-use cloth_sim::equilibrium::{Settings, Solver, Status};
+use cloth_sim::equilibrium::{Equilibrium, Settings, Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::convert::Infallible;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// What the solves of a stage have cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -31,6 +32,42 @@ pub struct Counters {
     pub iterations: usize,
     /// Factorisations.
     pub factorisations: usize,
+}
+
+impl Counters {
+    /// What was spent since an earlier reading.
+    pub fn since(&self, earlier: &Self) -> Self {
+        Self {
+            equilibria: self.equilibria - earlier.equilibria,
+            iterations: self.iterations - earlier.iterations,
+            factorisations: self.factorisations - earlier.factorisations,
+        }
+    }
+}
+
+/// Counts the cost of a stage while it runs; other threads may read it.
+#[derive(Debug, Default)]
+pub struct Meter {
+    equilibria: AtomicUsize,
+    iterations: AtomicUsize,
+    factorisations: AtomicUsize,
+}
+
+impl Meter {
+    /// What was spent so far.
+    pub fn read(&self) -> Counters {
+        Counters {
+            equilibria: self.equilibria.load(Ordering::Relaxed),
+            iterations: self.iterations.load(Ordering::Relaxed),
+            factorisations: self.factorisations.load(Ordering::Relaxed),
+        }
+    }
+
+    fn add(&self, equilibrium: &Equilibrium) {
+        self.equilibria.fetch_add(1, Ordering::Relaxed);
+        self.iterations.fetch_add(equilibrium.iterations, Ordering::Relaxed);
+        self.factorisations.fetch_add(equilibrium.factorisations, Ordering::Relaxed);
+    }
 }
 
 /// A frame that takes no part because its equilibrium was not found.
@@ -60,7 +97,6 @@ struct FrameResult {
     forces: Vec<f64>,
     /// Its derivatives, component-major.
     derivatives: Vec<f64>,
-    counters: Counters,
 }
 
 /// A stage's replicas under one unknown curve.
@@ -75,7 +111,7 @@ pub struct Simulation<'a> {
     frames: Vec<(usize, usize)>,
     states: Vec<State>,
     dropped: Vec<DroppedFrame>,
-    counters: Counters,
+    meter: Arc<Meter>,
 }
 
 impl<'a> Simulation<'a> {
@@ -89,6 +125,7 @@ impl<'a> Simulation<'a> {
         curve: StiffnessCurve,
         known: Curves,
         settings: Settings,
+        meter: Arc<Meter>,
     ) -> Self {
         let frames: Vec<(usize, usize)> = replicas
             .iter()
@@ -105,18 +142,19 @@ impl<'a> Simulation<'a> {
             states: Vec::new(),
             frames,
             dropped: Vec::new(),
-            counters: Counters::default(),
+            meter,
         };
         let curves = simulation.curves(&simulation.curve);
         simulation.states = simulation
             .frames
             .par_iter()
-            .map(|&(replica, frame)| start_state(&replicas[replica], &replicas[replica].frames[frame], &curves))
+            .map(|&(replica, frame)| {
+                start_state(&replicas[replica], &replicas[replica].frames[frame], &curves)
+            })
             .collect();
         let results = simulation.solve_frames(&curves, None);
         let (mut frames, mut states) = (Vec::new(), Vec::new());
         for (&(replica, frame), result) in simulation.frames.iter().zip(results) {
-            simulation.counters.add(&result.counters);
             if result.status == Status::Converged {
                 frames.push((replica, frame));
                 states.push(result.state);
@@ -154,8 +192,19 @@ impl<'a> Simulation<'a> {
         self.replicas.iter().all(|replica| replica.force_noise.is_some())
     }
 
+    /// What turns residuals into newtons: the noise they are in units of (the mean, if sequences differ), or 1.
+    pub fn unit(&self) -> f64 {
+        let scales = self.scales();
+        scales.iter().sum::<f64>() / scales.len() as f64
+    }
+
+    /// The component that is fitted.
+    pub fn component(&self) -> Component {
+        self.component
+    }
+
     /// What the residuals of each replica are divided by, N.
-    pub fn scales(&self) -> Vec<f64> {
+    fn scales(&self) -> Vec<f64> {
         let known = self.noise_is_known();
         let scale = |replica: &Replica| replica.force_noise.filter(|_| known).unwrap_or(1.0);
         self.replicas.iter().map(scale).collect()
@@ -176,11 +225,6 @@ impl<'a> Simulation<'a> {
         tracks.into_values().collect()
     }
 
-    /// What was spent so far.
-    pub fn counters(&self) -> Counters {
-        self.counters
-    }
-
     /// Frames without an equilibrium.
     pub fn dropped(&self) -> &[DroppedFrame] {
         &self.dropped
@@ -194,12 +238,13 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// Simulated forces along the measured components of every frame, N, with the last curve.
-    pub fn forces(&mut self) -> Vec<Vec<f64>> {
-        let curves = self.curves(&self.curve);
-        let results = self.solve_frames(&curves, None);
-        results.iter().for_each(|result| self.counters.add(&result.counters));
-        results.into_iter().map(|result| result.forces).collect()
+    /// Brings all frames to equilibrium under the curve, and returns the simulated forces along the measured components of
+    /// each, N.
+    pub fn settle(&mut self) -> Vec<Vec<f64>> {
+        let results = self.solve_frames(&self.curves(&self.curve), None);
+        let (states, forces) = results.into_iter().map(|result| (result.state, result.forces)).unzip();
+        self.states = states;
+        forces
     }
 
     /// The 1st and 99th percentile of the component's strains over all states.
@@ -246,21 +291,18 @@ impl<'a> Simulation<'a> {
         let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
         let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
         let mut x = state.x.clone();
-        if let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * cloth.unknowns()) {
+        if let Some(change) =
+            change.filter(|change| state.sensitivity.len() == change.len() * cloth.unknowns())
+        {
             for (column, step) in state.sensitivity.chunks_exact(cloth.unknowns().max(1)).zip(change.iter()) {
                 for (&coordinate, slope) in cloth.unknown_coordinates().iter().zip(column) {
                     x[coordinate] += slope * step;
                 }
             }
         }
-        let mut counters = Counters::default();
         let mut solve = |x: &mut Vec<f64>| {
             let equilibrium = solver.solve(curves, x, &self.settings);
-            counters.add(&Counters {
-                equilibria: 1,
-                iterations: equilibrium.iterations,
-                factorisations: equilibrium.factorisations,
-            });
+            self.meter.add(&equilibrium);
             equilibrium.status
         };
         let mut status = solve(&mut x);
@@ -271,7 +313,7 @@ impl<'a> Simulation<'a> {
         }
         let (forces, derivatives, sensitivity) = self.sensitivities(&mut solver, replica, frame, curves, &x);
         pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(solver);
-        FrameResult { state: State { x, sensitivity }, status, forces, derivatives, counters }
+        FrameResult { state: State { x, sensitivity }, status, forces, derivatives }
     }
 
     /// Simulated force components, their derivatives, and dx/dk.
@@ -329,7 +371,6 @@ impl Residuals for Simulation<'_> {
         };
         let change = point - DVector::from_column_slice(self.curve.stiffnesses());
         let results = self.solve_frames(&self.curves(&curve), Some(&change));
-        results.iter().for_each(|result| self.counters.add(&result.counters));
         if let Some(index) = results.iter().position(|result| result.status != Status::Converged) {
             let (replica, frame) = self.frames[index];
             let replica = &self.replicas[replica];
@@ -344,7 +385,9 @@ impl Residuals for Simulation<'_> {
         for (&(replica, frame), result) in self.frames.iter().zip(&results) {
             let measured = &self.replicas[replica].frames[frame].forces;
             let scale = scales[replica];
-            residual.extend(measured.iter().zip(&result.forces).map(|(m, simulated)| (m.force - simulated) / scale));
+            residual.extend(
+                measured.iter().zip(&result.forces).map(|(m, simulated)| (m.force - simulated) / scale),
+            );
             derivatives.extend(result.derivatives.iter().map(|derivative| derivative / scale));
         }
         let rows = residual.len();
@@ -354,14 +397,6 @@ impl Residuals for Simulation<'_> {
             residual: DVector::from_vec(residual),
             jacobian: Some(DMatrix::from_row_slice(rows, points, &derivatives)),
         })
-    }
-}
-
-impl Counters {
-    fn add(&mut self, other: &Self) {
-        self.equilibria += other.equilibria;
-        self.iterations += other.iterations;
-        self.factorisations += other.factorisations;
     }
 }
 

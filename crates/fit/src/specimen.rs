@@ -166,7 +166,9 @@ fn quarter_turn(side: Vector2<f64>) -> Vector2<f64> {
 }
 
 fn bounds(points: impl Iterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
-    points.fold([Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)], |[low, high], p| [low.inf(&p), high.sup(&p)])
+    points.fold([Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)], |[low, high], p| {
+        [low.inf(&p), high.sup(&p)]
+    })
 }
 
 /// Andrew's monotone chain.
@@ -233,7 +235,8 @@ impl<'a> Locator<'a> {
         match best(&mut here.iter().copied()) {
             Some(point) if depth(&point) > -1e-9 => point,
             // A coarse mesh may leave a bucket's border to a neighbour.
-            _ => best(&mut (0..self.mesh.triangles.len())).unwrap_or(MeshPoint { triangle: 0, weights: [1.0, 0.0, 0.0] }),
+            _ => best(&mut (0..self.mesh.triangles.len()))
+                .unwrap_or(MeshPoint { triangle: 0, weights: [1.0, 0.0, 0.0] }),
         }
     }
 
@@ -279,7 +282,10 @@ mod tests {
         assert!((specimen.grid.width - 0.08).abs() < 1e-12 && (specimen.grid.height - 0.04).abs() < 1e-12);
         for (node, material) in specimen.mesh.material.iter().enumerate() {
             assert!((material - specimen.mesh.positions[node].xy()).norm() < 1e-12);
-            assert!((specimen.place(&specimen.rest_in_world(node)) - specimen.mesh.positions[node]).norm() < 1e-12);
+            assert!(
+                (specimen.place(&specimen.rest_in_world(node)) - specimen.mesh.positions[node]).norm()
+                    < 1e-12
+            );
         }
     }
 

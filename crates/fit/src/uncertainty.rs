@@ -56,15 +56,17 @@ impl Scatter {
         let square = |i: usize| residual[i] * residual[i];
         let sum: f64 = (0..residual.len()).filter(|&i| informative[i]).map(square).sum();
         let mean_square = sum / freedom.max(1) as f64;
-        let variance = known.map_or_else(|| successive_variance(residual, tracks, &informative), |noise| noise * noise);
-        let exceeds = freedom > 0 && match known {
-            Some(_) => sum > chi_square_99(freedom as f64) * variance,
-            None => {
-                // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
-                let n = measurements as f64;
-                1.0 - variance / mean_square > Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()
-            }
-        };
+        let variance =
+            known.map_or_else(|| successive_variance(residual, tracks, &informative), |noise| noise * noise);
+        let exceeds = freedom > 0
+            && match known {
+                Some(_) => sum > chi_square_99(freedom as f64) * variance,
+                None => {
+                    // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
+                    let n = measurements as f64;
+                    1.0 - variance / mean_square > Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()
+                }
+            };
         // Noise that was estimated cannot exceed what is left.
         let variance = if known.is_none() && !exceeds { mean_square } else { variance };
         let misfit = if exceeds { (mean_square - variance).max(0.0).sqrt() } else { 0.0 };
@@ -76,6 +78,13 @@ impl Scatter {
             measurements,
             freedom,
         }
+    }
+}
+
+impl Scatter {
+    /// The same in other units.
+    pub fn times(self, unit: f64) -> Self {
+        Self { noise: self.noise * unit, residual: self.residual * unit, misfit: self.misfit * unit, ..self }
     }
 }
 
@@ -254,7 +263,8 @@ mod tests {
     #[test]
     fn what_no_measurement_sees_has_no_band() {
         let jacobian = DMatrix::from_row_slice(3, 3, &[1.0, 2.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 3.0]);
-        let scatter = Scatter { noise: 1.0, known: true, residual: 1.0, misfit: 0.0, measurements: 3, freedom: 1 };
+        let scatter =
+            Scatter { noise: 1.0, known: true, residual: 1.0, misfit: 0.0, measurements: 3, freedom: 1 };
         let covariance = Covariance::new(&jacobian, &scatter);
         assert_eq!((covariance.rank, Covariance::rank_of(&jacobian)), (2, 2));
         assert_eq!(covariance.half_band(&DVector::from_vec(vec![1.0, 0.0, 0.0])), None);

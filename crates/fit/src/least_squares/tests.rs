@@ -334,17 +334,38 @@ fn zz_stress() {
         let m = generator.random_range(0..120);
         let jac = random(&mut generator, 2 * n, r) * random(&mut generator, r, n);
         let mut p = LeastSquares::new(jac, random_vector(&mut generator, 2 * n) * 10.0);
-        if seed % 3 == 0 { let t = random_vector(&mut generator, n); p.target = &p.jacobian * t; }
-        p.rows = DMatrix::from_fn(m, n, |_, _| if generator.random_bool(0.3) { f64::from(generator.random_range(-2i32..3)) } else { 0.0 });
-        p.bounds = if seed % 2 == 0 { DVector::zeros(m) } else { DVector::from_fn(m, |_, _| -generator.random_range(0.0..0.3)) };
+        if seed % 3 == 0 {
+            let t = random_vector(&mut generator, n);
+            p.target = &p.jacobian * t;
+        }
+        p.rows = DMatrix::from_fn(m, n, |_, _| {
+            if generator.random_bool(0.3) { f64::from(generator.random_range(-2i32..3)) } else { 0.0 }
+        });
+        p.bounds = if seed % 2 == 0 {
+            DVector::zeros(m)
+        } else {
+            DVector::from_fn(m, |_, _| -generator.random_range(0.0..0.3))
+        };
         p.lower = DVector::from_element(n, -1.0);
         p.upper = DVector::from_element(n, 1.0);
-        if seed % 5 == 0 { p.lower.fill(0.0); }
-        if seed % 7 == 0 { p.smoothing = Some(Smoothing { roughness: random(&mut generator, n, n), point: random_vector(&mut generator, n) }); }
+        if seed % 5 == 0 {
+            p.lower.fill(0.0);
+        }
+        if seed % 7 == 0 {
+            p.smoothing = Some(Smoothing {
+                roughness: random(&mut generator, n, n),
+                point: random_vector(&mut generator, n),
+            });
+        }
         let t = std::time::Instant::now();
         let s = p.solve();
         slow = slow.max(t.elapsed());
-        if s.status != Status::Optimal { bad += 1; eprintln!("seed {seed} n {n} r {r} m {m} {:?} {:?}", s.status, s.kkt); } else { worst = worst.max(s.kkt.largest()); }
+        if s.status != Status::Optimal {
+            bad += 1;
+            eprintln!("seed {seed} n {n} r {r} m {m} {:?} {:?}", s.status, s.kkt);
+        } else {
+            worst = worst.max(s.kkt.largest());
+        }
     }
     eprintln!("bad {bad} worst {worst:e} slowest {slow:?}");
 }

@@ -48,7 +48,13 @@ impl KnownFabric {
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
         toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-            Error::input(path, line, "fabric", error.message().trim(), "name, width_m, height_m, areal_density_kg_m2, model, [largest_extension] and [curves.…]")
+            Error::input(
+                path,
+                line,
+                "fabric",
+                error.message().trim(),
+                "name, width_m, height_m, areal_density_kg_m2, model, [largest_extension] and [curves.…]",
+            )
         })
     }
 
@@ -59,7 +65,11 @@ impl KnownFabric {
     pub fn curves(&self) -> Result<Curves> {
         for needed in [Component::StretchWeft, Component::StretchWarp] {
             if !self.curves.contains_key(&needed) {
-                return Err(Error::Setting { field: "curves", found: format!("no {needed}"), expected: "stretch-weft and stretch-warp".into() });
+                return Err(Error::Setting {
+                    field: "curves",
+                    found: format!("no {needed}"),
+                    expected: "stretch-weft and stretch-warp".into(),
+                });
             }
         }
         self.curves
@@ -68,7 +78,10 @@ impl KnownFabric {
                 let negative = self.model.negative_strain(component, Compression::ZeroStrain);
                 StiffnessCurve::new(points.strain.clone(), points.stiffness_n_per_m.clone(), negative)
                     .map(|curve| (component, curve))
-                    .map_err(|source| Error::Mechanics { context: format!("{}, {component}", self.name), source })
+                    .map_err(|source| Error::Mechanics {
+                        context: format!("{}, {component}", self.name),
+                        source,
+                    })
             })
             .collect()
     }

@@ -1,0 +1,114 @@
+//! A curve grows: one control point, then twice as many segments each time, as long as that pays.
+//!
+//! Source: Miguel et al. 2012, §5.2.
+
+use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
+use crate::report::Level;
+use crate::simulation::Simulation;
+use crate::stage::{Constraints, Event, Settings, Watch};
+use cloth_sim::curve::{StiffnessCurve, stability_rows};
+use cloth_sim::error::Result;
+use nalgebra::{DMatrix, DVector};
+use std::time::Instant;
+
+/// A curve that was grown.
+pub struct Growth {
+    /// The curve.
+    pub curve: StiffnessCurve,
+    /// The fit with its control points.
+    pub outcome: Outcome,
+    /// Its constraints.
+    pub domain: Domain,
+    /// Every level, the last one too where it did not pay and was not kept.
+    pub levels: Vec<Level>,
+    /// Why it ended.
+    pub stopped: String,
+}
+
+/// Fits with more and more control points, from the simulation's curve on.
+///
+/// * `lowest_tangent` — dσ/dε is kept above it, N/m
+///
+/// # Errors
+/// Control points that make no curve.
+pub fn grow(
+    simulation: &mut Simulation<'_>,
+    settings: &Settings,
+    lowest_tangent: f64,
+    watch: &mut Watch<'_>,
+) -> Result<Growth> {
+    let clock = Instant::now();
+    let spent_before = watch.meter.read();
+    let measurements = simulation.measurements() as f64;
+    let unit = simulation.unit();
+    let mut levels = Vec::new();
+    let mut kept: Option<(StiffnessCurve, Outcome, Domain, f64)> = None;
+    loop {
+        let curve = match &kept {
+            None => simulation.curve().clone(),
+            Some((curve, ..)) => curve.resampled(
+                next_points(curve.len(), settings.points),
+                simulation.visited()[1].max(f64::MIN_POSITIVE),
+            )?,
+        };
+        let points = curve.len();
+        (watch.observe)(Event::Level { component: simulation.component(), points });
+        simulation.set_curve(curve.clone());
+        let domain = domain(&curve, settings.constraints, lowest_tangent)?;
+        let start = DVector::from_column_slice(curve.stiffnesses());
+        let mut observe = |iteration: &Iteration| {
+            let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
+            let factorisations = watch.meter.read().since(&spent_before).factorisations;
+            let seconds = clock.elapsed().as_secs_f64();
+            (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
+        };
+        let outcome = match minimise(simulation, &start, &domain, &settings.outer, &mut observe) {
+            Ok(outcome) => outcome,
+            Err(never) => match never {},
+        };
+        let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
+        let curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
+        let (status, iterations) = (outcome.status.to_string(), outcome.iterations.clone());
+        levels.push(Level { points, rms, status, iterations });
+        match kept {
+            Some((curve, outcome, domain, before)) if !(rms < (1.0 - settings.growth_gain) * before) => {
+                let share = 100.0 * settings.growth_gain;
+                let stopped = format!("{points} control points lower the residual by less than {share:.0} %");
+                return Ok(Growth { curve, outcome, domain, levels, stopped });
+            }
+            _ if points >= settings.points => {
+                let stopped = format!("all {points} control points are in use");
+                return Ok(Growth { curve, outcome, domain, levels, stopped });
+            }
+            _ => kept = Some((curve, outcome, domain, rms)),
+        }
+    }
+}
+
+/// One, two, three, five, nine …: every segment is halved, up to the most that is wanted.
+fn next_points(points: usize, most: usize) -> usize {
+    if points == 1 { 2 } else { 2 * points - 1 }.min(most)
+}
+
+/// The constraints of a curve, and smoothness where data see nothing.
+///
+/// # Errors
+/// Strains that no curve can have.
+pub fn domain(curve: &StiffnessCurve, constraints: Constraints, lowest: f64) -> Result<Domain> {
+    let points = curve.len();
+    let (rows, lowest) = match constraints {
+        Constraints::Stable => (stability_rows(curve.strains())?, lowest),
+        Constraints::ControlPoints => (DMatrix::identity(points, points), 0.0),
+    };
+    let second_difference = |i: usize, j: usize| match j.wrapping_sub(i) {
+        0 | 2 => 1.0,
+        1 => -2.0,
+        _ => 0.0,
+    };
+    let roughness = match points {
+        1 => None,
+        2 => Some(DMatrix::from_row_slice(1, 2, &[1.0, -1.0])),
+        _ => Some(DMatrix::from_fn(points - 2, points, second_difference)),
+    };
+    Ok(Domain { bounds: DVector::from_element(rows.nrows(), lowest), rows, roughness })
+}
