@@ -8,10 +8,12 @@ use crate::simulation::Meter;
 use cloth_sim::equilibrium;
 use cloth_sim::material::{Component, Compression, Model};
 use cloth_sim::mesh::Diagonals;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What keeps a curve physical.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Constraints {
     /// dσ/dε above a thousandth of the largest secant stiffness everywhere.
     #[default]
