@@ -9,9 +9,9 @@
 //! alike in neighbours: n measurements then tell no more than p, and the factor n/p says so. It enters only where s² is
 //! above σ² beyond doubt (99 %).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-/// Relative size of a singular value below which the data do not see its direction.
+/// Relative size of an eigenvalue of the scaled JᵀJ below which the data do not see its direction.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Standard normal quantiles of 97.5 % and 99 %.
@@ -133,20 +133,17 @@ pub struct Covariance {
 }
 
 impl Covariance {
-    /// Rank of a Jacobian, by the singular values of its scaled columns.
+    /// Rank of a Jacobian.
     pub fn rank_of(jacobian: &DMatrix<f64>) -> usize {
-        let (scaled, _) = scale_columns(jacobian);
-        let values = scaled.singular_values();
-        values.iter().filter(|&&value| value > RANK_TOLERANCE * values.max()).count()
+        let gram = gram(jacobian).0;
+        let largest = gram.eigenvalues.max();
+        gram.eigenvalues.iter().filter(|&&value| value > RANK_TOLERANCE * largest).count()
     }
 
     /// The covariance of control values fitted with this Jacobian.
     pub fn new(jacobian: &DMatrix<f64>, scatter: &Scatter) -> Self {
         let parameters = jacobian.ncols();
-        let (scaled, norms) = scale_columns(jacobian);
-        // The Gram matrix is small; its eigenvalues are the squared singular values of columns of unit length, and what
-        // lies below 1e-10 of them is not seen at the precision of any instrument.
-        let gram = (scaled.transpose() * &scaled).symmetric_eigen();
+        let (gram, norms) = gram(jacobian);
         let largest = gram.eigenvalues.max();
         let seen = |i: usize| gram.eigenvalues[i] > RANK_TOLERANCE * largest;
         let rank = (0..parameters).filter(|&i| seen(i)).count();
@@ -199,18 +196,16 @@ impl Covariance {
     }
 }
 
-/// Columns of unit length, and their lengths; a zero column stays.
-fn scale_columns(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
-    let norms = DVector::from_iterator(
-        jacobian.ncols(),
-        jacobian.column_iter().map(|column| match column.norm() {
-            0.0 => 1.0,
-            norm => norm,
-        }),
-    );
-    let mut scaled = jacobian.clone();
-    scaled.column_iter_mut().zip(norms.iter()).for_each(|(mut column, norm)| column /= *norm);
-    (scaled, norms)
+/// Eigenvalues and vectors of JᵀJ with columns of unit length, and the lengths they had.
+///
+/// The matrix is small; its eigenvalues are squared singular values, and what lies below 1e-10 of the largest is seen at
+/// the precision of no instrument.
+fn gram(jacobian: &DMatrix<f64>) -> (SymmetricEigen<f64, Dyn>, DVector<f64>) {
+    let norms = jacobian.column_iter().map(|column| if column.norm() > 0.0 { column.norm() } else { 1.0 });
+    let norms = DVector::from_iterator(jacobian.ncols(), norms);
+    let product = jacobian.transpose() * jacobian;
+    let scaled = DMatrix::from_fn(norms.len(), norms.len(), |i, j| product[(i, j)] / (norms[i] * norms[j]));
+    (scaled.symmetric_eigen(), norms)
 }
 
 #[cfg(test)]

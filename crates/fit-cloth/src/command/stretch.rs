@@ -1,0 +1,118 @@
+//! `fit-cloth stretch`: weft and warp stretch curves from a measurement set.
+
+use super::Outcome;
+use crate::failure::Failure;
+use crate::options::{FitFlags, Telling};
+use crate::progress::Progress;
+use crate::text;
+use clap::Args;
+use cloth_fit::error::Error;
+use cloth_fit::frame::MeasurementSet;
+use cloth_fit::io::read_set;
+use cloth_fit::material_file::MaterialFile;
+use cloth_fit::report::StageReport;
+use cloth_fit::result::{check_output, write_result};
+use cloth_fit::stage::{Settings, stretch};
+use cloth_fit::store::replace_folder;
+use cloth_sim::material::{Component, Model};
+use serde_json::{Map, Value};
+use std::io::Write;
+use std::path::Path;
+
+const EXAMPLE: &str = "\
+Example:
+  fit-cloth stretch fixtures/cotton-denim --out out
+  fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out
+
+Writes material.json, curves/*.csv, residuals.csv and forces.csv; with --model all, a folder for each model.";
+
+/// `fit-cloth stretch`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct StretchOptions {
+    /// How to fit.
+    #[command(flatten)]
+    pub fit: FitFlags,
+}
+
+/// Fits weft and warp.
+///
+/// # Errors
+/// Bad input, nothing to fit, or an output folder that is no former result; what the operating system refuses.
+pub fn run(options: &StretchOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let flags = &options.fit;
+    let folder = flags.output_folder();
+    flags.use_threads()?;
+    check_output(&folder)?;
+    let set = read_set(&flags.set)?;
+    let mut results: Vec<(Settings, Vec<StageReport>)> = Vec::new();
+    for model in flags.model.models() {
+        let settings = flags.settings(model);
+        let stages = fit_model(&set, &flags.set, &settings, telling, output)?;
+        results.push((settings, stages));
+    }
+    let in_folder = |model: Model, folder: &Path| match results.len() {
+        1 => folder.to_path_buf(),
+        _ => folder.join(model.to_string()),
+    };
+    replace_folder(&folder, |temporary| {
+        results.iter().try_for_each(|(settings, stages)| {
+            write_result(&in_folder(settings.model, temporary), &set, settings, stages)
+        })
+    })?;
+    if telling.json {
+        let mut models = Map::new();
+        for (settings, stages) in &results {
+            let file = MaterialFile::new(&set, settings, stages).to_json();
+            let value = serde_json::from_str(&file).unwrap_or(Value::Null);
+            models.insert(settings.model.to_string(), value);
+        }
+        writeln!(output, "{}", Value::Object(models))?;
+    } else if !telling.quiet {
+        writeln!(output, "Written to {}", folder.display())?;
+    }
+    let converged = results.iter().flat_map(|(_, stages)| stages).all(|stage| stage.converged);
+    Ok(if converged { Outcome::Done } else { Outcome::NotConverged })
+}
+
+fn fit_model(
+    set: &MeasurementSet,
+    path: &Path,
+    settings: &Settings,
+    telling: Telling,
+    output: &mut impl Write,
+) -> Result<Vec<StageReport>, Failure> {
+    let speaks = !telling.json && !telling.quiet;
+    let mut stages = Vec::new();
+    for component in [Component::StretchWeft, Component::StretchWarp] {
+        let progress = Progress::new(&format!("{component}, {}", settings.model), !telling.quiet);
+        let report = stretch::fit(set, component, settings, &mut progress.watch())?;
+        progress.finish();
+        match report {
+            Some(report) => {
+                if speaks {
+                    writeln!(output, "{}", text::iterations(&report))?;
+                    writeln!(output, "{}", text::curve(&report))?;
+                }
+                stages.push(report);
+            }
+            None if speaks => writeln!(output, "{component}: no sequence shows it; it is not fitted\n")?,
+            None => {}
+        }
+    }
+    if stages.is_empty() {
+        let found = match set.sequences.len() {
+            0 => "no sequence at all".to_string(),
+            _ => set.sequences.iter().map(|s| s.kind.to_string()).collect::<Vec<_>>().join(", "),
+        };
+        return Err(Error::input(path, None, "kind", found, "a sequence of kind stretch-weft or stretch-warp").into());
+    }
+    if speaks {
+        writeln!(output, "{}", text::residuals(&stages))?;
+        for stage in &stages {
+            writeln!(output, "{}", text::verdict(stage))?;
+        }
+        writeln!(output)?;
+    }
+    Ok(stages)
+}

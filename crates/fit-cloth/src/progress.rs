@@ -1,0 +1,57 @@
+//! The progress line on standard error; nothing where that is not a terminal.
+
+use cloth_fit::simulation::Meter;
+use cloth_fit::stage::{Event, Watch};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A line that turns while something runs.
+pub struct Progress {
+    bar: ProgressBar,
+    meter: Arc<Meter>,
+}
+
+impl Progress {
+    /// Starts a line.
+    pub fn new(what: &str, visible: bool) -> Self {
+        let meter: Arc<Meter> = Arc::default();
+        let bar = if visible { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
+        let seen = Arc::clone(&meter);
+        let style = ProgressStyle::with_template("{spinner} {prefix}{msg}, {solved} [{elapsed}]")
+            .unwrap_or_else(|_| ProgressStyle::default_spinner())
+            .with_key("solved", move |_: &indicatif::ProgressState, text: &mut dyn std::fmt::Write| {
+                let _ = write!(text, "{} equilibria", seen.read().equilibria);
+            });
+        bar.set_style(style);
+        bar.set_prefix(what.to_string());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self { bar, meter }
+    }
+
+    /// What a fit tells its progress to.
+    pub fn watch(&self) -> Watch<'_> {
+        let (mut points, mut tried) = (0, 0);
+        Watch {
+            meter: Arc::clone(&self.meter),
+            observe: Box::new(move |event| {
+                let message = match event {
+                    Event::Level { points: now, .. } => {
+                        (points, tried) = (now, 0);
+                        format!(": {points} control points")
+                    }
+                    Event::Iteration { rms, .. } => {
+                        tried += 1;
+                        format!(": {points} control points, iteration {tried}, residual {rms:.3e} N")
+                    }
+                };
+                self.bar.set_message(message);
+            }),
+        }
+    }
+
+    /// Removes the line.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}
