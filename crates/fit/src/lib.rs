@@ -2,3 +2,5 @@
 
 pub mod error;
 pub mod frame;
+pub mod gauss_newton;
+pub mod least_squares;

@@ -1,0 +1,272 @@
+//! Nonlinear least squares under linear inequalities: Gauss–Newton steps in a scaled trust region.
+//!
+//! ```text
+//! minimise F(k) = ‖r(k)‖²   subject to   A k ≥ b          r = measured − simulated, J = ∂ simulated / ∂k
+//! step:  minimise ‖J p − r‖²   subject to   A (k + p) ≥ b,   ‖D p‖ ≤ Δ          d_j = largest ‖J_j‖ so far
+//! ```
+//!
+//! A step is kept by its gain ratio, (F(k) − F(k+p)) over what the linear model promised, and the same ratio widens
+//! or narrows Δ. Near the solution steps are not cut and the method is plain Gauss–Newton. How a step is found:
+//! `region.rs`. Source: Moré, The Levenberg-Marquardt algorithm (1978).
+
+mod outcome;
+mod region;
+
+pub use outcome::{Iteration, Outcome, Status};
+
+use crate::least_squares::{LeastSquares, Status as StepStatus};
+use nalgebra::{DMatrix, DVector};
+use region::{Bend, Scale, State, Step};
+
+/// A fitted model: residuals and their derivative at any point.
+pub trait Residuals {
+    /// What makes going on pointless (a file gone, misuse). A point that cannot be evaluated is no error: see
+    /// [`Evaluation::Failed`].
+    type Error;
+
+    /// Evaluates at a point.
+    ///
+    /// Every trial point is evaluated once, with the Jacobian: after an equilibrium its factorisation is at hand and
+    /// serves the sensitivities too. Where the Jacobian is dear, see [`Options::jacobian_at_trials`].
+    ///
+    /// # Errors
+    /// Ends the fit and is handed through.
+    fn evaluate(&mut self, point: &DVector<f64>, jacobian: bool) -> Result<Evaluation, Self::Error>;
+}
+
+/// What became of an evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Evaluation {
+    /// It succeeded. Numbers that are not finite count as failed.
+    Values {
+        /// Measured − simulated, each divided by its noise.
+        residual: DVector<f64>,
+        /// ∂ simulated / ∂ point, divided by the same noise; needed only if asked for.
+        jacobian: Option<DMatrix<f64>>,
+    },
+    /// The model has no answer at this point, for instance no equilibrium: the step is rejected, the region shrinks.
+    Failed {
+        /// Why, as a sentence.
+        reason: String,
+    },
+}
+
+/// The inequalities A k ≥ b, and what to prefer where data see nothing.
+#[derive(Debug, Clone)]
+pub struct Domain {
+    /// A.
+    pub rows: DMatrix<f64>,
+    /// b.
+    pub bounds: DVector<f64>,
+    /// S of [`Smoothing`](crate::least_squares::Smoothing): the total point is made smooth where the data see nothing. Without it such directions
+    /// stay where they start.
+    pub roughness: Option<DMatrix<f64>>,
+}
+
+impl Domain {
+    /// All of n-space.
+    pub fn everywhere(n: usize) -> Self {
+        Self { rows: DMatrix::zeros(0, n), bounds: DVector::zeros(0), roughness: None }
+    }
+}
+
+/// When to stop and how to start. The defaults converge fully; a published protocol that stops below 1 % sets
+/// `gain_tolerance: 0.01`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Steps tried at most, rejected ones included. Default 500.
+    pub max_iterations: usize,
+    /// Stops when a step that the region did not cut lowers the sum of squares by a smaller share, and the linear
+    /// model promised no more: a step that falls short of its promise is no sign of a minimum. Default 1e-13.
+    pub gain_tolerance: f64,
+    /// Stops when the step is a smaller share of the point, both as ‖D ·‖. Default 1e-11.
+    pub step_tolerance: f64,
+    /// First Δ as a multiple of ‖D k‖ at the start (of 1 where that is zero). Default 1: the unknown that matters
+    /// most may about double.
+    pub initial_radius: f64,
+    /// Steps with a smaller gain ratio are rejected. Default 1e-4.
+    pub acceptance: f64,
+    /// Whether a trial point is evaluated with its Jacobian at once (default), or only when it has been accepted.
+    pub jacobian_at_trials: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            max_iterations: 500,
+            gain_tolerance: 1e-13,
+            step_tolerance: 1e-11,
+            initial_radius: 1.0,
+            acceptance: 1e-4,
+            jacobian_at_trials: true,
+        }
+    }
+}
+
+/// A whole Gauss–Newton step that promises a smaller share of the sum of squares and still does not lower it shows
+/// noise in the residuals, not a place to go on from: with ten thousand measurements the minimum is then a hundredth
+/// of a standard error away.
+const NOISE: f64 = 1e-8;
+
+/// Fits from a start; `observe` sees every step when it has been tried.
+///
+/// A start outside the domain is first moved to the nearest point inside.
+///
+/// # Errors
+/// Only what [`Residuals::evaluate`] hands out: a fit that does not converge says so in its status.
+///
+/// # Panics
+/// Where the shapes do not fit together, or an evaluation leaves out a Jacobian that was asked for.
+pub fn minimise<P: Residuals>(
+    problem: &mut P,
+    start: &DVector<f64>,
+    domain: &Domain,
+    options: &Options,
+    observe: &mut dyn FnMut(&Iteration),
+) -> Result<Outcome, P::Error> {
+    let start = match inside(start, domain) {
+        Ok(start) => start,
+        Err(status) => return Ok(Outcome::unevaluated(start.clone(), Status::StepFailed { status })),
+    };
+    let mut state = match values(problem.evaluate(&start, true)?) {
+        Ok((residual, Some(jacobian))) => State::new(start, residual, jacobian),
+        Ok((_, None)) => panic!("the Jacobian was asked for"),
+        Err(reason) => return Ok(Outcome::unevaluated(start, Status::StartFailed { reason })),
+    };
+    let mut scale = Scale::new(&state.jacobian);
+    let mut radius = options.initial_radius * scale.norm_or_one(&state.point);
+    let mut bend: Option<Bend> = None;
+    let mut iterations = Vec::new();
+    // Since the last accepted step: how many were rejected, and why the last of them could not be evaluated.
+    let (mut rejected, mut failure) = (0, None);
+
+    let status = loop {
+        if iterations.len() == options.max_iterations {
+            break Status::IterationLimit { limit: options.max_iterations };
+        }
+        let step = Step::new(&state, domain, &scale, radius, bend.as_ref());
+        if let StepStatus::Infeasible | StepStatus::NotFinite = step.status {
+            break Status::StepFailed { status: step.status };
+        }
+        let share = scale.norm_or_one(&state.point);
+        let length = scale.norm(&step.step);
+        let short = length <= options.step_tolerance * share;
+        if short && !step.cut {
+            break Status::SmallStep { tolerance: options.step_tolerance };
+        }
+        if (short || rejected >= 3) && failure.is_none() && step.whole_promise <= NOISE {
+            break Status::Noise { promised: step.whole_promise };
+        }
+        if short {
+            break Status::Stalled { reason: failure };
+        }
+
+        let point = &state.point + &step.step;
+        let trial = values(problem.evaluate(&point, options.jacobian_at_trials)?);
+        let gain = trial.as_ref().ok().map(|(residual, _)| state.gain(residual));
+        let ratio = gain.map_or(f64::NEG_INFINITY, |gain| gain_ratio(gain, step.promised));
+        let accepted = ratio > options.acceptance;
+        let mut iteration = Iteration {
+            iteration: iterations.len() + 1,
+            sum_of_squares: state.residual.norm_squared(),
+            gain,
+            promised: step.promised,
+            step: length / share,
+            radius: radius / share,
+            accepted,
+            rank: step.rank,
+            active: step.active,
+        };
+        radius = match ratio {
+            ratio if ratio < 0.25 => narrowed(gain, step.promised) * radius.min(length),
+            ratio if ratio > 0.75 => radius.max(2.0 * step.seen),
+            _ => radius,
+        };
+        match trial {
+            Ok((residual, jacobian)) if accepted => {
+                let jacobian = match jacobian {
+                    Some(jacobian) => Ok(jacobian),
+                    None => values(problem.evaluate(&point, true)?).map(|(_, jacobian)| {
+                        jacobian.unwrap_or_else(|| panic!("the Jacobian was asked for"))
+                    }),
+                };
+                let Ok(jacobian) = jacobian else {
+                    break Status::Stalled { reason: jacobian.err() };
+                };
+                let next = State::new(point, residual, jacobian);
+                bend = Some(Bend::between(&state, &next));
+                state = next;
+                scale.widen(&state.jacobian);
+                (rejected, failure) = (0, None);
+            }
+            rejection => {
+                rejected += 1;
+                failure = rejection.err();
+            }
+        }
+        iteration.sum_of_squares = state.residual.norm_squared();
+        observe(&iteration);
+        iterations.push(iteration);
+        let little = gain.unwrap_or(f64::INFINITY).max(step.promised) <= options.gain_tolerance;
+        if (accepted && little && !step.cut) || state.residual.norm_squared() == 0.0 {
+            break Status::SmallGain { tolerance: options.gain_tolerance };
+        }
+    };
+    let sum_of_squares = state.residual.norm_squared();
+    let State { point, residual, jacobian, .. } = state;
+    Ok(Outcome { point, residual, jacobian, sum_of_squares, status, iterations })
+}
+
+/// The start itself, or the nearest point that meets the inequalities.
+fn inside(start: &DVector<f64>, domain: &Domain) -> Result<DVector<f64>, StepStatus> {
+    let n = start.len();
+    let slack = &domain.rows * start - &domain.bounds;
+    if slack.iter().all(|&slack| slack >= 0.0) {
+        return Ok(start.clone());
+    }
+    let mut nearest = LeastSquares::new(DMatrix::identity(n, n), start.clone());
+    (nearest.rows, nearest.bounds) = (domain.rows.clone(), domain.bounds.clone());
+    let solution = nearest.solve();
+    match solution.status {
+        StepStatus::Optimal | StepStatus::Inaccurate { .. } => Ok(solution.point),
+        status => Err(status),
+    }
+}
+
+/// Gain over promise. Where the model promises nothing beyond rounding (a step along which the data see nothing) any
+/// point that is no worse will do.
+fn gain_ratio(gain: f64, promised: f64) -> f64 {
+    let rounding = 1e-14;
+    match promised <= rounding {
+        true if gain >= -rounding => 1.0,
+        true => f64::NEG_INFINITY,
+        false => gain / promised,
+    }
+}
+
+/// By how much to shorten the step that just disappointed: to the minimum of the parabola through both ends and the
+/// slope at the start, kept between a tenth and a half.
+fn narrowed(gain: Option<f64>, promised: f64) -> f64 {
+    // With the slope of an undamped step, twice its promise π: F(t) = 1 − 2π t + (2π − gain) t².
+    gain.map_or(0.25, |gain| (promised / (2.0 * promised - gain)).clamp(0.1, 0.5))
+}
+
+type Values = (DVector<f64>, Option<DMatrix<f64>>);
+
+/// The values of an evaluation, or why there are none.
+fn values(evaluation: Evaluation) -> Result<Values, String> {
+    match evaluation {
+        Evaluation::Failed { reason } => Err(reason),
+        Evaluation::Values { residual, jacobian } => {
+            let finite =
+                residual.iter().chain(jacobian.iter().flat_map(DMatrix::iter)).all(|x| x.is_finite());
+            match finite && residual.norm_squared().is_finite() {
+                true => Ok((residual, jacobian)),
+                false => Err("the residual or its derivative is not finite".to_owned()),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,230 @@
+//! One least-squares problem with unit columns and unit rows, its interior-point solution and its KKT residual.
+
+use super::active_set::{Held, polish};
+use super::dense::{Spectrum, Triangle};
+use super::{Kkt, RANK_TOLERANCE};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
+use nalgebra::{DMatrix, DVector};
+
+/// Minimise ½‖R q − c‖² subject to G q ≥ h, with `q = norms ∘ p` so that the columns of R have unit length, as have
+/// the rows of G.
+pub(super) struct Scaled {
+    /// R, n×n.
+    pub(super) matrix: DMatrix<f64>,
+    /// c.
+    pub(super) target: DVector<f64>,
+    /// Lengths of the original columns, 1 for a zero one.
+    pub(super) norms: DVector<f64>,
+    /// G.
+    pub(super) rows: DMatrix<f64>,
+    /// h.
+    pub(super) bounds: DVector<f64>,
+    /// For every row of G the original row and its length.
+    pub(super) origin: Vec<(usize, f64)>,
+    /// Singular values of R.
+    pub(super) spectrum: Spectrum,
+    /// Singular values up to here count as zero.
+    pub(super) threshold: f64,
+    /// A zero row that asks for a positive bound.
+    pub(super) impossible: bool,
+}
+
+impl Scaled {
+    pub(super) fn new(
+        jacobian: &DMatrix<f64>,
+        target: &DVector<f64>,
+        rows: &DMatrix<f64>,
+        bounds: &DVector<f64>,
+    ) -> Self {
+        let n = jacobian.ncols();
+        let norms = DVector::from_iterator(n, jacobian.column_iter().map(|column| unit_or(column.norm())));
+        let mut jacobian = jacobian.clone();
+        jacobian.column_iter_mut().zip(norms.iter()).for_each(|(mut column, &norm)| column /= norm);
+        let Triangle { matrix, target, .. } = Triangle::reduce(&jacobian, target);
+
+        let scaled = DMatrix::from_fn(rows.nrows(), n, |i, j| rows[(i, j)] / norms[j]);
+        let lengths: Vec<f64> = scaled.row_iter().map(|row| row.norm()).collect();
+        let bounded = |i: usize| bounds[i] > f64::NEG_INFINITY;
+        let origin: Vec<(usize, f64)> =
+            lengths.iter().copied().enumerate().filter(|&(i, length)| bounded(i) && length > 0.0).collect();
+        let spectrum = Spectrum::of(&matrix);
+        Self {
+            rows: DMatrix::from_fn(origin.len(), n, |i, j| scaled[(origin[i].0, j)] / origin[i].1),
+            bounds: DVector::from_iterator(
+                origin.len(),
+                origin.iter().map(|&(i, length)| bounds[i] / length),
+            ),
+            impossible: (0..rows.nrows()).any(|i| lengths[i] == 0.0 && bounds[i] > 0.0),
+            threshold: RANK_TOLERANCE * spectrum.values.iter().copied().fold(0.0, f64::max),
+            matrix,
+            target,
+            norms,
+            origin,
+            spectrum,
+        }
+    }
+
+    pub(super) fn columns(&self) -> usize {
+        self.matrix.ncols()
+    }
+
+    pub(super) fn rank(&self) -> usize {
+        self.spectrum.rank(self.threshold)
+    }
+
+    /// Directions that the system does not see, one a column, in the unscaled variables, to unit length.
+    pub(super) fn null_vectors(&self) -> DMatrix<f64> {
+        let rank = self.rank();
+        let mut vectors = self.spectrum.right.columns(rank, self.columns() - rank).into_owned();
+        for mut vector in vectors.column_iter_mut() {
+            vector.component_div_assign(&self.norms);
+            let norm = unit_or(vector.norm());
+            vector /= norm;
+        }
+        vectors
+    }
+
+    pub(super) fn along(&self, row: usize, step: &DVector<f64>) -> f64 {
+        (0..step.len()).map(|j| self.rows[(row, j)] * step[j]).sum()
+    }
+
+    pub(super) fn slack(&self, row: usize, point: &DVector<f64>) -> f64 {
+        self.along(row, point) - self.bounds[row]
+    }
+
+    /// The size of the numbers that cancel in the slack of a row. Those of the target are among them: a solution
+    /// that the rows press to zero is known to their rounding.
+    pub(super) fn size(&self, row: usize, point: &DVector<f64>) -> f64 {
+        unit_or(point.amax() + self.bounds[row].abs() + self.target.amax())
+    }
+
+    /// How far a row is violated, relative to the numbers in it; 0 where it holds.
+    pub(super) fn violation(&self, row: usize, point: &DVector<f64>) -> f64 {
+        (-self.slack(row, point)).max(0.0) / self.size(row, point)
+    }
+
+    /// Rᵀ(R q − c).
+    pub(super) fn gradient(&self, point: &DVector<f64>) -> DVector<f64> {
+        self.matrix.tr_mul(&(&self.matrix * point - &self.target))
+    }
+
+    /// The size of the terms that cancel in the gradient at a solution.
+    pub(super) fn gradient_scale(&self, point: &DVector<f64>) -> f64 {
+        unit_or(self.target.norm() + point.norm())
+    }
+
+    pub(super) fn kkt(&self, held: &Held) -> Kkt {
+        let scale = self.gradient_scale(&held.point);
+        let pull = self.rows.tr_mul(&held.multipliers);
+        let over_rows =
+            |figure: &dyn Fn(usize) -> f64| (0..self.rows.nrows()).map(figure).fold(0.0, f64::max);
+        Kkt {
+            stationarity: (self.gradient(&held.point) - pull).amax() / scale,
+            primal: over_rows(&|row| self.violation(row, &held.point)),
+            dual: over_rows(&|row| -held.multipliers[row] / scale),
+            complementarity: over_rows(&|row| {
+                let size = self.size(row, &held.point);
+                (held.multipliers[row] * self.slack(row, &held.point)).abs() / scale / size
+            }),
+        }
+    }
+
+    /// The minimiser, and whether the interior-point method called the rows contradictory.
+    pub(super) fn minimise(&self) -> (Held, bool) {
+        let free = self.spectrum.solve(&self.target, self.threshold);
+        let multipliers = DVector::zeros(self.rows.nrows());
+        if (0..self.rows.nrows()).all(|row| self.slack(row, &free) >= 0.0) {
+            // Twice: the second solve takes the rounding of the first out.
+            let rounding = self.spectrum.solve(&(&self.target - &self.matrix * &free), self.threshold);
+            let refined = &free + rounding;
+            let feasible = (0..self.rows.nrows()).all(|row| self.slack(row, &refined) >= 0.0);
+            return (Held { point: if feasible { refined } else { free }, multipliers }, false);
+        }
+        let (interior, status) = self.interior_point(&free);
+        let refused = matches!(status, SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible);
+        let mut start = if refused || self.kkt(&interior).largest().is_nan() {
+            Held { point: DVector::zeros(self.columns()), multipliers }
+        } else {
+            interior
+        };
+        // A row holds the solution where its multiplier outweighs its slack, each in its own unit.
+        let (gradient, size) = (self.gradient_scale(&start.point), unit_or(start.point.amax()));
+        let holds = |row: usize| start.multipliers[row] / gradient > self.slack(row, &start.point) / size;
+        let (mut working, loose): (Vec<usize>, Vec<usize>) =
+            (0..self.rows.nrows()).partition(|&row| holds(row));
+        working.sort_by(|&i, &j| start.multipliers[j].total_cmp(&start.multipliers[i]));
+        loose.into_iter().for_each(|row| start.multipliers[row] = 0.0);
+        let polished = polish(self, &start.point, &working);
+        let better = self.kkt(&polished).largest() <= self.kkt(&start).largest();
+        (if better { polished } else { start }, refused)
+    }
+
+    /// clarabel on the small problem. The unknowns are measured in the length of the solution: its tolerances are
+    /// absolute, so a first answer far shorter than assumed is computed again.
+    fn interior_point(&self, free: &DVector<f64>) -> (Held, SolverStatus) {
+        let needed = self.bounds.iter().copied().fold(0.0, f64::max);
+        let mut length = unit_or(free.amax().max(needed));
+        let (mut held, mut status) = self.interior_point_in(length);
+        for _ in 0..3 {
+            let found = held.point.amax().max(needed);
+            if status != SolverStatus::Solved || found == 0.0 || found > 1e-3 * length {
+                break;
+            }
+            length = found;
+            (held, status) = self.interior_point_in(length);
+        }
+        (held, status)
+    }
+
+    /// With q = ℓ x and t = R x, so that R is not squared:
+    ///
+    /// ```text
+    /// minimise ½ (ℓ/β) ‖t‖² − (c/β)·t   subject to   R x − t = 0,  G x ≥ h/ℓ      β = max(ℓ, ‖Rᵀc‖∞)
+    /// ```
+    fn interior_point_in(&self, length: f64) -> (Held, SolverStatus) {
+        let (n, m) = (self.columns(), self.rows.nrows());
+        let force = length.max(self.matrix.tr_mul(&self.target).amax());
+        let mut curvature = DMatrix::zeros(2 * n, 2 * n);
+        curvature.view_mut((n, n), (n, n)).fill_diagonal(length / force);
+        let slope: Vec<f64> =
+            (0..2 * n).map(|i| if i < n { 0.0 } else { -self.target[i - n] / force }).collect();
+        let mut system = DMatrix::zeros(n + m, 2 * n);
+        system.view_mut((0, 0), (n, n)).copy_from(&self.matrix);
+        system.view_mut((0, n), (n, n)).fill_diagonal(-1.0);
+        system.view_mut((n, 0), (m, n)).copy_from(&-&self.rows);
+        let right: Vec<f64> =
+            (0..n + m).map(|i| if i < n { 0.0 } else { -self.bounds[i - n] / length }).collect();
+        let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
+        let cones = [ZeroConeT(n), NonnegativeConeT(m)];
+        let solver =
+            DefaultSolver::new(&sparse(&curvature), &slope, &sparse(&system), &right, &cones, settings);
+        let Ok(mut solver) = solver else {
+            let held = Held { point: DVector::zeros(n), multipliers: DVector::zeros(m) };
+            return (held, SolverStatus::NumericalError);
+        };
+        solver.solve();
+        let point = DVector::from_fn(n, |j, _| solver.solution.x[j] * length);
+        let multipliers = DVector::from_fn(m, |i, _| solver.solution.z[n + i] * force);
+        (Held { point, multipliers }, solver.solution.status)
+    }
+}
+
+/// A scale to divide by: the value itself, or 1 if it is zero.
+pub(super) fn unit_or(value: f64) -> f64 {
+    if value == 0.0 { 1.0 } else { value }
+}
+
+/// Compressed columns without the zeros.
+fn sparse(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
+    let mut starts = vec![0];
+    let (mut row_indices, mut values) = (Vec::new(), Vec::new());
+    for column in matrix.column_iter() {
+        for (i, &value) in column.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            row_indices.push(i);
+            values.push(value);
+        }
+        starts.push(values.len());
+    }
+    CscMatrix::new(matrix.nrows(), matrix.ncols(), starts, row_indices, values)
+}
