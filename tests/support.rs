@@ -5,6 +5,7 @@ use cloth_fit::report::Sample;
 use cloth_sim::material::Model;
 use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::{Isometry3, Vector3};
+use std::path::PathBuf;
 
 /// Uniform stretch of a 100 mm square along weft, without shapes: four vertices, two bars, and forces of a known law.
 pub struct UniformStretch<'a> {
@@ -96,4 +97,16 @@ pub fn coverage(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
         sample.band.is_some_and(|[low, high]| low - slack <= stress && stress <= high + slack)
     };
     samples.iter().filter(inside).count() as f64 / samples.len() as f64
+
+/// A folder or file of the real measurements, below the folder that `FIT_CLOTH_DATA` names.
+///
+/// # Panics
+/// When the variable is not set or nothing of that name is there: a test without its data has not been run.
+pub fn data(name: &str) -> PathBuf {
+    let Some(root) = std::env::var_os("FIT_CLOTH_DATA") else {
+        panic!("set FIT_CLOTH_DATA to the folder with the real measurements: this test needs {name} from it");
+    };
+    let path = PathBuf::from(root).join(name);
+    assert!(path.exists(), "{} does not exist: is FIT_CLOTH_DATA the right folder?", path.display());
+    path
 }

@@ -7,7 +7,7 @@
 //!
 //! A step is kept by its gain ratio, (F(k) − F(k+p)) over what the linear model promised, and the same ratio widens
 //! or narrows Δ. Near the solution steps are not cut and the method is plain Gauss–Newton. How a step is found:
-//! [`region`]. Source: Moré, The Levenberg-Marquardt algorithm (1978).
+//! `region.rs`. Source: Moré, The Levenberg-Marquardt algorithm (1978).
 
 mod outcome;
 mod region;
@@ -58,7 +58,7 @@ pub struct Domain {
     pub rows: DMatrix<f64>,
     /// b.
     pub bounds: DVector<f64>,
-    /// S of [`Smoothing`]: the total point is made smooth where the data see nothing. Without it such directions
+    /// S of [`Smoothing`](crate::least_squares::Smoothing): the total point is made smooth where the data see nothing. Without it such directions
     /// stay where they start.
     pub roughness: Option<DMatrix<f64>>,
 }
@@ -77,7 +77,7 @@ pub struct Options {
     /// Steps tried at most, rejected ones included. Default 500.
     pub max_iterations: usize,
     /// Stops when a step that the region did not cut lowers the sum of squares by a smaller share, and the linear
-    /// model promised no more. Default 1e-13.
+    /// model promised no more: a step that falls short of its promise is no sign of a minimum. Default 1e-13.
     pub gain_tolerance: f64,
     /// Stops when the step is a smaller share of the point, both as ‖D ·‖. Default 1e-11.
     pub step_tolerance: f64,
@@ -137,8 +137,8 @@ pub fn minimise<P: Residuals>(
     let mut radius = options.initial_radius * scale.norm_or_one(&state.point);
     let mut bend: Option<Bend> = None;
     let mut iterations = Vec::new();
-    // Since the last accepted step: how many were rejected, what a whole step promised, why none could be evaluated.
-    let (mut rejected, mut whole_promise, mut failure) = (0, f64::INFINITY, None);
+    // Since the last accepted step: how many were rejected, and why the last of them could not be evaluated.
+    let (mut rejected, mut failure) = (0, None);
 
     let status = loop {
         if iterations.len() == options.max_iterations {
@@ -154,8 +154,8 @@ pub fn minimise<P: Residuals>(
         if short && !step.cut {
             break Status::SmallStep { tolerance: options.step_tolerance };
         }
-        if (short || rejected >= 3) && whole_promise <= NOISE {
-            break Status::Noise { promised: whole_promise };
+        if (short || rejected >= 3) && failure.is_none() && step.whole_promise <= NOISE {
+            break Status::Noise { promised: step.whole_promise };
         }
         if short {
             break Status::Stalled { reason: failure };
@@ -197,23 +197,18 @@ pub fn minimise<P: Residuals>(
                 bend = Some(Bend::between(&state, &next));
                 state = next;
                 scale.widen(&state.jacobian);
-                (rejected, whole_promise, failure) = (0, f64::INFINITY, None);
+                (rejected, failure) = (0, None);
             }
             rejection => {
                 rejected += 1;
                 failure = rejection.err();
-                if !step.cut {
-                    whole_promise = step.promised;
-                }
             }
         }
         iteration.sum_of_squares = state.residual.norm_squared();
         observe(&iteration);
         iterations.push(iteration);
-        let little = |share: f64| share <= options.gain_tolerance;
-        if (gain.is_some_and(little) && little(step.promised) && !step.cut)
-            || state.residual.norm_squared() == 0.0
-        {
+        let little = gain.unwrap_or(f64::INFINITY).max(step.promised) <= options.gain_tolerance;
+        if (accepted && little && !step.cut) || state.residual.norm_squared() == 0.0 {
             break Status::SmallGain { tolerance: options.gain_tolerance };
         }
     };
@@ -252,7 +247,7 @@ fn gain_ratio(gain: f64, promised: f64) -> f64 {
 /// By how much to shorten the step that just disappointed: to the minimum of the parabola through both ends and the
 /// slope at the start, kept between a tenth and a half.
 fn narrowed(gain: Option<f64>, promised: f64) -> f64 {
-    // The slope is at least as steep as the promise; with it F(t) = 1 − 2πt + (2π − gain)t².
+    // With the slope of an undamped step, twice its promise π: F(t) = 1 − 2π t + (2π − gain) t².
     gain.map_or(0.25, |gain| (promised / (2.0 * promised - gain)).clamp(0.1, 0.5))
 }
 

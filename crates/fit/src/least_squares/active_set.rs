@@ -2,9 +2,13 @@
 //!
 //! An interior-point solution is a few digits; which rows hold it there is nearly always known from it. With these
 //! held the problem is a plain least-squares problem in what is left of the space, solved to rounding. A wrong guess
-//! is corrected as in any primal active-set method: the first row met on the way is added, a row that pulls is let go.
-//! Source: Nocedal & Wright, Numerical Optimization (2006), algorithm 16.3; differs in taking steps of least norm
-//! where the reduced problem is rank-deficient, and in snapping to the held rows before each step.
+//! is corrected as in any primal active-set method: a row met on the way is added; at the end of the way the
+//! multipliers of all rows met are computed as a non-negative least-squares problem, and where they do not balance the
+//! gradient, what is left of it leads on. (Letting go of one row with a negative multiplier after the other can run
+//! in circles where more rows meet than the space has dimensions, as the rows of a curve do at zero stiffness.)
+//!
+//! Sources: Nocedal & Wright, Numerical Optimization (2006), algorithm 16.3; Lawson & Hanson, Solving Least Squares
+//! Problems (1974), chapter 23.
 
 use super::dense::{Spectrum, Split, independent};
 use super::scaled::Scaled;
@@ -21,11 +25,12 @@ pub(super) struct Held {
 pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) -> Held {
     let rows = &problem.rows;
     let count = rows.nrows();
-    let mut working = independent(rows, working.iter().copied());
+    let mut working = working.to_vec();
     let mut point = start.clone();
     let mut multipliers = DVector::zeros(count);
-    let limit = 50 + 4 * (problem.columns() + count);
-    for iteration in 0..limit {
+    let (mut repeated, mut lowest) = (false, f64::INFINITY);
+    for _ in 0..50 + 4 * (problem.columns() + count) {
+        working = independent(rows, working.into_iter());
         let split = Split::by(rows, &working);
         let gap =
             DVector::from_iterator(working.len(), working.iter().map(|&row| -problem.slack(row, &point)));
@@ -45,30 +50,64 @@ pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) 
         }
         point += &step;
 
-        let gradient = problem.gradient(&point);
-        let Some(held) = split.multipliers(&gradient) else { break };
-        multipliers.fill(0.0);
-        working.iter().zip(held.iter()).for_each(|(&row, &value)| multipliers[row] = value);
         if let Some(row) = violated(problem, &point, &working) {
             working.push(row);
             continue;
         }
-        let pulling = (0..working.len()).filter(|&i| held[i] < -1e-12 * problem.gradient_scale(&point));
-        // Late in a long run the lowest index is taken, which cannot cycle (Bland).
-        let worst = match iteration < limit / 2 {
-            true => pulling.min_by(|&i, &j| held[i].total_cmp(&held[j])),
-            false => pulling.min_by_key(|&i| working[i]),
-        };
-        match worst {
-            Some(i) => {
-                working.remove(i);
-            }
-            // A last step that was long leaves its rounding behind: go once more.
-            None if step.amax() + snap.amax() > 1e-8 * point.amax() && iteration + 1 < limit => {}
-            None => break,
+        // A last step that was long leaves its rounding behind: go once more.
+        if step.amax() + snap.amax() > 1e-8 * point.amax() && !repeated {
+            repeated = true;
+            continue;
         }
+        repeated = false;
+        let gradient = problem.gradient(&point);
+        let rounding = 1e-12 * problem.gradient_scale(&point);
+        let tight = (0..count).filter(|&row| problem.slack(row, &point) <= 1e-12 * problem.size(row, &point));
+        multipliers = pushes(problem, &tight.collect::<Vec<_>>(), &gradient, rounding);
+        let downhill = rows.tr_mul(&multipliers) - &gradient;
+        // Every return to this line lies lower, or there is nothing left but rounding.
+        let cost = (&problem.matrix * &point - &problem.target).norm_squared();
+        if downhill.amax() <= rounding || cost >= lowest {
+            break;
+        }
+        lowest = cost;
+        working = (0..count).filter(|&row| multipliers[row] > 0.0).collect();
+        let bend = (&problem.matrix * &downhill).norm_squared();
+        let step = &downhill * (downhill.norm_squared() / bend);
+        let met = first_met(problem, &point, &step, &working);
+        point.axpy(met.map_or(1.0, |(_, fraction)| fraction), &step, 1.0);
+        working.extend(met.map(|(row, _)| row));
     }
     Held { point, multipliers }
+}
+
+/// The λ ≥ 0 over some rows with ‖Gᵀλ − gradient‖ least (Lawson & Hanson); zero for all other rows.
+fn pushes(problem: &Scaled, among: &[usize], gradient: &DVector<f64>, rounding: f64) -> DVector<f64> {
+    let mut multipliers = DVector::zeros(problem.rows.nrows());
+    let mut pushing: Vec<usize> = Vec::new();
+    for _ in 0..3 * among.len() {
+        let left = gradient - problem.rows.tr_mul(&multipliers);
+        let gain = |row: usize| problem.along(row, &left);
+        let next = among.iter().copied().filter(|row| !pushing.contains(row) && gain(*row) > 0.1 * rounding);
+        let Some(row) = next.max_by(|&a, &b| gain(a).total_cmp(&gain(b))) else { break };
+        pushing.push(row);
+        if independent(&problem.rows, pushing.iter().copied()).len() < pushing.len() {
+            break;
+        }
+        while let Some(wanted) = Split::by(&problem.rows, &pushing).multipliers(gradient) {
+            // On the way to the wanted values stop where the first turns negative, and let that row go.
+            let part = |i: usize| multipliers[pushing[i]] / (multipliers[pushing[i]] - wanted[i]);
+            let first =
+                (0..pushing.len()).filter(|&i| wanted[i] <= 0.0).min_by(|&i, &j| part(i).total_cmp(&part(j)));
+            let share = first.map_or(1.0, part);
+            for (i, &row) in pushing.iter().enumerate() {
+                multipliers[row] += share * (wanted[i] - multipliers[row]);
+            }
+            let Some(first) = first else { break };
+            multipliers[pushing.remove(first)] = 0.0;
+        }
+    }
+    multipliers
 }
 
 /// The row that a step meets first, and after which fraction of it.

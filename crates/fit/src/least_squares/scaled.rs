@@ -93,9 +93,15 @@ impl Scaled {
         self.along(row, point) - self.bounds[row]
     }
 
+    /// The size of the numbers that cancel in the slack of a row. Those of the target are among them: a solution
+    /// that the rows press to zero is known to their rounding.
+    pub(super) fn size(&self, row: usize, point: &DVector<f64>) -> f64 {
+        unit_or(point.amax() + self.bounds[row].abs() + self.target.amax())
+    }
+
     /// How far a row is violated, relative to the numbers in it; 0 where it holds.
     pub(super) fn violation(&self, row: usize, point: &DVector<f64>) -> f64 {
-        (-self.slack(row, point)).max(0.0) / unit_or(point.amax() + self.bounds[row].abs())
+        (-self.slack(row, point)).max(0.0) / self.size(row, point)
     }
 
     /// Rᵀ(R q − c).
@@ -118,7 +124,7 @@ impl Scaled {
             primal: over_rows(&|row| self.violation(row, &held.point)),
             dual: over_rows(&|row| -held.multipliers[row] / scale),
             complementarity: over_rows(&|row| {
-                let size = unit_or(held.point.amax() + self.bounds[row].abs());
+                let size = self.size(row, &held.point);
                 (held.multipliers[row] * self.slack(row, &held.point)).abs() / scale / size
             }),
         }

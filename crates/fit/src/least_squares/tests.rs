@@ -1,5 +1,5 @@
 use super::dense::Spectrum;
-use super::{Bound, LeastSquares, OPTIMAL, Smoothing, Solution, Status};
+use super::{Bound, LeastSquares, Smoothing, Solution, Status};
 use nalgebra::{DMatrix, DVector};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -309,7 +309,7 @@ fn contradictions_and_nan_are_said() {
     problem.target[0] = f64::NAN;
     let solution = problem.solve();
     assert_eq!(solution.status, Status::NotFinite);
-    assert!(solution.point.iter().all(|value| value.is_finite()) && !(solution.kkt.largest() <= OPTIMAL));
+    assert!(solution.point.iter().all(|value| value.is_finite()) && solution.kkt.largest().is_nan());
 }
 
 #[test]
@@ -323,49 +323,28 @@ fn a_hundred_thousand_rows_reduce_to_the_same_answer() {
 }
 
 #[test]
-fn zz_stress() {
-    let mut bad = 0;
-    let mut worst = 0.0f64;
-    let mut slow = std::time::Duration::ZERO;
-    for seed in 0..3000 {
+fn many_rows_through_one_point_and_hidden_directions_are_no_trouble() {
+    for seed in 0..300 {
         let mut generator = StdRng::seed_from_u64(50_000 + seed);
         let n = generator.random_range(2..25);
-        let r = generator.random_range(1..=n);
+        let rank = generator.random_range(1..=n);
         let m = generator.random_range(0..120);
-        let jac = random(&mut generator, 2 * n, r) * random(&mut generator, r, n);
-        let mut p = LeastSquares::new(jac, random_vector(&mut generator, 2 * n) * 10.0);
-        if seed % 3 == 0 {
-            let t = random_vector(&mut generator, n);
-            p.target = &p.jacobian * t;
-        }
-        p.rows = DMatrix::from_fn(m, n, |_, _| {
-            if generator.random_bool(0.3) { f64::from(generator.random_range(-2i32..3)) } else { 0.0 }
+        let jacobian = random(&mut generator, 2 * n, rank) * random(&mut generator, rank, n);
+        let mut problem = LeastSquares::new(jacobian, random_vector(&mut generator, 2 * n) * 10.0);
+        // A cone of small whole numbers with its tip at zero; every other one cut off before the tip.
+        problem.rows = DMatrix::from_fn(m, n, |_, _| match generator.random_bool(0.3) {
+            true => f64::from(generator.random_range(-2..3)),
+            false => 0.0,
         });
-        p.bounds = if seed % 2 == 0 {
-            DVector::zeros(m)
-        } else {
-            DVector::from_fn(m, |_, _| -generator.random_range(0.0..0.3))
-        };
-        p.lower = DVector::from_element(n, -1.0);
-        p.upper = DVector::from_element(n, 1.0);
-        if seed % 5 == 0 {
-            p.lower.fill(0.0);
-        }
+        problem.bounds = DVector::from_fn(m, |_, _| -generator.random_range(0.0..0.3)) * (seed % 2) as f64;
+        problem.lower.fill(if seed % 5 == 0 { 0.0 } else { -1.0 });
+        problem.upper.fill(1.0);
         if seed % 7 == 0 {
-            p.smoothing = Some(Smoothing {
-                roughness: random(&mut generator, n, n),
-                point: random_vector(&mut generator, n),
-            });
+            let point = random_vector(&mut generator, n);
+            problem.smoothing = Some(Smoothing { roughness: random(&mut generator, n, n), point });
         }
-        let t = std::time::Instant::now();
-        let s = p.solve();
-        slow = slow.max(t.elapsed());
-        if s.status != Status::Optimal {
-            bad += 1;
-            eprintln!("seed {seed} n {n} r {r} m {m} {:?} {:?}", s.status, s.kkt);
-        } else {
-            worst = worst.max(s.kkt.largest());
-        }
+        let solution = problem.solve();
+        assert_eq!(solution.rank, rank, "seed {seed}");
+        assert_optimal(&problem, &solution, 1e-11);
     }
-    eprintln!("bad {bad} worst {worst:e} slowest {slow:?}");
 }
