@@ -6,3 +6,4 @@ pub mod io;
 pub mod replica;
 pub mod specimen;
 pub mod store;
+pub mod strip;
