@@ -97,6 +97,7 @@ pub fn coverage(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
         sample.band.is_some_and(|[low, high]| low - slack <= stress && stress <= high + slack)
     };
     samples.iter().filter(inside).count() as f64 / samples.len() as f64
+}
 
 /// A folder or file of the real measurements, below the folder that `FIT_CLOTH_DATA` names.
 ///

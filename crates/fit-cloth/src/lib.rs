@@ -1,1 +1,47 @@
-//! The command line of fit-cloth.
+//! The command line of fit-cloth: from its arguments to an exit code.
+//!
+//! | exit code | means |
+//! |---|---|
+//! | 0 | done, and converged where something was solved |
+//! | 1 | the operating system refused |
+//! | 2 | the command line makes no sense |
+//! | 3 | bad input: a file, a measurement or a setting |
+//! | 4 | not converged; what was reached is written, and marked so |
+//! | 130 | interrupted |
+
+pub mod command;
+pub mod failure;
+pub mod options;
+pub mod progress;
+pub mod text;
+
+use clap::Parser;
+use command::Outcome;
+use failure::Failure;
+use options::Options;
+use std::io::{self, ErrorKind, Write};
+use std::process::ExitCode;
+
+/// Runs the program on its arguments, its standard output and its standard error.
+pub fn main() -> ExitCode {
+    let options = match Options::try_parse() {
+        Ok(options) => options,
+        Err(error) => {
+            // Help that nobody reads is no failure, and there is nowhere to tell of one on standard error.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+        }
+    };
+    let mut output = io::stdout().lock();
+    let outcome = command::run(&options, &mut output);
+    match outcome.and_then(|outcome| output.flush().map_err(Failure::from).map(|()| outcome)) {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::NotConverged) => ExitCode::from(4),
+        // A reader that has read enough, such as `head`.
+        Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(failure) => {
+            let _ = writeln!(io::stderr(), "error: {}", failure.in_words());
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

@@ -1,3 +1,7 @@
 //! The program `fit-cloth`.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    fit_cloth::main()
+}

@@ -9,7 +9,11 @@ pub fn iterations(stage: &StageReport) -> String {
     let _ = writeln!(text, "  points  iteration   rms [N]     gain      step    radius  kept");
     for level in &stage.levels {
         if level.iterations.is_empty() {
-            let _ = writeln!(text, "  {:6}  {:9}  {:9.3e}  {:>8}  {:>8}  {:>8}", level.points, 0, level.rms, "", "", "");
+            let _ = writeln!(
+                text,
+                "  {:6}  {:9}  {:9.3e}  {:>8}  {:>8}  {:>8}",
+                level.points, 0, level.rms, "", "", ""
+            );
         }
         // The level's residual belongs to its last iteration; sums of squares give the others in proportion.
         let last = level.iterations.last().map_or(1.0, |iteration| iteration.sum_of_squares);
@@ -40,10 +44,13 @@ pub fn iterations(stage: &StageReport) -> String {
 pub fn curve(stage: &StageReport) -> String {
     let report = &stage.curve;
     let [low, high] = report.visited;
-    let mut text = format!("  strain      stiffness [N/m]       stress [N/m]   (seen from {low:.4} to {high:.4})\n");
+    let mut text =
+        format!("  strain      stiffness [N/m]       stress [N/m]   (seen from {low:.4} to {high:.4})\n");
     for (i, (strain, k)) in report.curve.strains().iter().zip(report.curve.stiffnesses()).enumerate() {
         let deviation = match report.deviations[i] {
-            Some(deviation) => format!("± {:.1} %", 100.0 * 1.96 * deviation / k.abs().max(f64::MIN_POSITIVE)),
+            Some(deviation) => {
+                format!("± {:.1} %", 100.0 * 1.96 * deviation / k.abs().max(f64::MIN_POSITIVE))
+            }
             None => "not seen".into(),
         };
         let _ = writeln!(text, "  {strain:<8.5}  {k:12.5e} {deviation:>10}  {:12.5e}", k * strain);

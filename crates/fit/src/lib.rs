@@ -16,5 +16,6 @@ pub mod simulation;
 pub mod specimen;
 pub mod stage;
 pub mod store;
+pub mod strip;
 mod summary;
 pub mod uncertainty;

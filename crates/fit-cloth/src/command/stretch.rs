@@ -105,7 +105,14 @@ fn fit_model(
             0 => "no sequence at all".to_string(),
             _ => set.sequences.iter().map(|s| s.kind.to_string()).collect::<Vec<_>>().join(", "),
         };
-        return Err(Error::input(path, None, "kind", found, "a sequence of kind stretch-weft or stretch-warp").into());
+        return Err(Error::input(
+            path,
+            None,
+            "kind",
+            found,
+            "a sequence of kind stretch-weft or stretch-warp",
+        )
+        .into());
     }
     if speaks {
         writeln!(output, "{}", text::residuals(&stages))?;

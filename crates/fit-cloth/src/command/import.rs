@@ -1,0 +1,44 @@
+//! `fit-cloth import`: a laboratory's table into a measurement set.
+
+pub mod strip;
+
+use super::Outcome;
+use crate::failure::Failure;
+use crate::options::Telling;
+use clap::{Args, Subcommand};
+use std::io::Write;
+use strip::StripOptions;
+
+const EXAMPLE: &str = "\
+Example:
+  fit-cloth import strip weft.csv --set cotton-knit --name cotton-knit \\
+    --areal-density-kg-m2 0.3 --direction weft --gauge-m 0.08 --width-m 0.04 \\
+    --separation clamp_distance_m --force force_N
+
+fit-cloth import strip --help explains every option.";
+
+/// `fit-cloth import`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Import {
+    /// Which table.
+    #[command(subcommand)]
+    pub table: ImportTable,
+}
+
+/// The tables that can be imported.
+#[derive(Debug, Clone, Subcommand)]
+pub enum ImportTable {
+    /// A tensile machine's table: a strip pulled between two clamps
+    Strip(StripOptions),
+}
+
+/// Imports a table.
+///
+/// # Errors
+/// The table, the set or an option is not what it should be; the operating system refuses.
+pub fn run(import: &Import, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    match &import.table {
+        ImportTable::Strip(options) => strip::run(options, telling, output),
+    }
+}

@@ -1,0 +1,218 @@
+//! `fit-cloth import strip`: a tensile machine's table into a sequence.
+
+use crate::command::{Outcome, tell};
+use crate::failure::Failure;
+use crate::options::Telling;
+use clap::{Args, ValueEnum};
+use cloth_fit::error::Error;
+use cloth_fit::frame::Sequence;
+use cloth_fit::strip::{Added, Column, Direction, Extension, Sample, StripTest, add_to_set, read_strip};
+use nalgebra::Isometry3;
+use serde_json::json;
+use std::fs;
+use std::io::Write;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+const EXAMPLE: &str = "\
+A COLUMN is its name in the header, exactly. Its unit is the ending of that name (travel_mm, Load (N), \
+Strain [%]) or stands behind a colon (load:N); it is never guessed. Lengths: m, mm, cm, in. \
+Forces: N, kN, cN, mN, gf, kgf, lbf. Strains: 1, %.
+
+Example:
+  fit-cloth import strip weft.csv --set cotton-knit --name cotton-knit \\
+    --areal-density-kg-m2 0.3 --direction weft --gauge-m 0.08 --width-m 0.04 \\
+    --separation clamp_distance_m --force force_N --branches 0,2";
+
+/// `fit-cloth import strip`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE, allow_negative_numbers = true)]
+pub struct StripOptions {
+    /// The table: comma-separated values with a header
+    pub file: PathBuf,
+    /// Folder of the measurement set; it is made if there is none
+    #[arg(long)]
+    pub set: PathBuf,
+    /// Name of the sequence [default: stretch-weft, -warp or -bias]
+    #[arg(long)]
+    pub sequence: Option<String>,
+    /// Replace a sequence of that name
+    #[arg(long)]
+    pub replace: bool,
+    /// Name of the fabric; a new set needs it
+    #[arg(long)]
+    pub name: Option<String>,
+    /// Mass per area; a new set needs it
+    #[arg(long, value_name = "KG_M2")]
+    pub areal_density_kg_m2: Option<f64>,
+    /// Thickness of the fabric
+    #[arg(long, value_name = "M")]
+    pub thickness_m: Option<f64>,
+    /// Which way the strip was pulled
+    #[arg(long)]
+    pub direction: StripDirection,
+    /// Distance of the clamps at which the strip is straight and free
+    #[arg(long, value_name = "M")]
+    pub gauge_m: f64,
+    /// Width of the strip
+    #[arg(long, value_name = "M")]
+    pub width_m: f64,
+    /// Where the clamps were.
+    #[command(flatten)]
+    pub extension: ExtensionOptions,
+    /// Column of the load cell's reading, positive in tension
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub force: Column,
+    /// Column of the branches' numbers [default: branch, if there; else a branch ends where the extension
+    /// turns back by more than 2 % of its range]
+    #[arg(long, value_name = "COLUMN")]
+    pub branch_column: Option<String>,
+    /// Branches to take, separated by commas [default: all]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    pub branches: Option<Vec<usize>>,
+    /// Rows to look at, such as 3-90 or 3-, both ends included; 1 is the first below the header [default: all]
+    #[arg(long, value_name = "FIRST-LAST", value_parser = rows)]
+    pub rows: Option<RangeInclusive<usize>>,
+    /// Take every so many-th row of a branch
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    pub every: usize,
+    /// Standard deviation of the load cell
+    #[arg(long, value_name = "N")]
+    pub force_noise_n: Option<f64>,
+}
+
+/// The column that tells where the clamps were: one of three.
+#[derive(Debug, Clone, Args)]
+#[group(required = true, multiple = false)]
+pub struct ExtensionOptions {
+    /// Column of the clamps' distance
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub separation: Option<Column>,
+    /// Column of the clamps' distance less the gauge length
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub displacement: Option<Column>,
+    /// Column of the engineering strain: displacement by gauge length
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub strain: Option<Column>,
+}
+
+/// Which way the strip was pulled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum StripDirection {
+    /// Along the weft yarns
+    Weft,
+    /// Along the warp yarns
+    Warp,
+    /// At 45° to both
+    Bias,
+}
+
+/// Imports a tensile machine's table.
+///
+/// # Errors
+/// The table, the set or an option is not what it should be; the operating system refuses.
+pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let test = strip_test(options);
+    let sequence = read_strip(&options.file, &test)?;
+    let place = options.set.join(&sequence.name);
+    refuse_replacing(&options.file, &place)?;
+    let sample = Sample {
+        name: options.name.clone(),
+        areal_density: options.areal_density_kg_m2,
+        thickness: options.thickness_m,
+    };
+    let added = add_to_set(&options.set, &sample, &sequence, options.replace)?;
+    let rows = sequence.frames.len() - 1;
+    let [strain, force] = ranges(&sequence, test.gauge);
+    let done = match added {
+        Added::NewSet => "first sequence of a new set",
+        Added::NewSequence => "new sequence of the set",
+        Added::Replaced => "replaced the sequence of that name",
+    };
+    let text = format!(
+        "{}: {rows} {}, strain {:.4} to {:.4}, force {:.4} to {:.4} N\n{done}: {}",
+        sequence.kind,
+        if rows == 1 { "row" } else { "rows" },
+        strain[0],
+        strain[1],
+        force[0],
+        force[1],
+        place.display()
+    );
+    let json = json!({
+        "set": options.set.display().to_string(),
+        "sequence": sequence.name,
+        "kind": sequence.kind.to_string(),
+        "new_set": added == Added::NewSet,
+        "replaced": added == Added::Replaced,
+        "rows": rows,
+        "strain": strain,
+        "force_n": force,
+    });
+    tell(telling, output, &text, &json)?;
+    Ok(Outcome::Done)
+}
+
+fn strip_test(options: &StripOptions) -> StripTest {
+    let direction = match options.direction {
+        StripDirection::Weft => Direction::Weft,
+        StripDirection::Warp => Direction::Warp,
+        StripDirection::Bias => Direction::Bias,
+    };
+    let ExtensionOptions { separation, displacement, strain } = options.extension.clone();
+    let extension = separation
+        .map(Extension::Separation)
+        .or(displacement.map(Extension::Displacement))
+        .or(strain.map(Extension::Strain))
+        .expect("clap requires one of the group");
+    let defaults =
+        StripTest::new(direction, options.gauge_m, options.width_m, extension, options.force.clone());
+    StripTest {
+        name: options.sequence.clone().unwrap_or(defaults.name),
+        branch_column: options.branch_column.clone(),
+        branches: options.branches.clone(),
+        rows: options.rows.clone(),
+        every: options.every,
+        force_noise: options.force_noise_n,
+        ..defaults
+    }
+}
+
+/// A table in the folder that is about to be replaced would be lost.
+fn refuse_replacing(file: &Path, place: &Path) -> Result<(), Error> {
+    let (Ok(whole), Ok(replaced)) = (fs::canonicalize(file), fs::canonicalize(place)) else { return Ok(()) };
+    if whole.starts_with(replaced) {
+        let found = format!("a table within {}, which would be replaced", place.display());
+        return Err(Error::input(file, None, "file", found, "a table elsewhere, or another --sequence"));
+    }
+    Ok(())
+}
+
+/// Least and greatest strain, and force along the pull in N.
+fn ranges(sequence: &Sequence, gauge: f64) -> [[f64; 2]; 2] {
+    let pull = sequence.force_direction.unwrap_or_default();
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)])
+    };
+    let rows = || sequence.frames.iter().skip(1);
+    let shift = |pose: &Isometry3<f64>| pose.translation.vector.dot(&pull);
+    [
+        range(&mut rows().filter_map(|frame| frame.poses.last()).map(|pose| shift(pose) / gauge)),
+        range(&mut rows().flat_map(|frame| &frame.cords).map(|cord| cord.force.dot(&pull))),
+    ]
+}
+
+/// `COLUMN[:UNIT]`
+fn column(text: &str) -> Result<Column, String> {
+    let column = Column::from(text);
+    if column.name.is_empty() { Err("a column's name is missing".into()) } else { Ok(column) }
+}
+
+/// `FIRST-LAST` or `FIRST-`
+fn rows(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let (first, last) =
+        text.split_once('-').ok_or("two row numbers with - between them, such as 3-90 or 3-")?;
+    let number = |text: &str| text.trim().parse().map_err(|_| format!("{text:?} is no row number"));
+    let last = if last.trim().is_empty() { usize::MAX } else { number(last)? };
+    Ok(number(first)?..=last)
+}

@@ -1,0 +1,54 @@
+//! Why a command could not be carried out: its words and its exit code.
+
+use std::error::Error as _;
+use std::io;
+
+/// What stopped a command. A fit that does not converge is no failure: see [`Outcome`](crate::command::Outcome).
+#[derive(Debug)]
+pub enum Failure {
+    /// A measurement, a setting or a file.
+    Fit(cloth_fit::error::Error),
+    /// Standard output could not be written.
+    Output(io::Error),
+}
+
+impl From<cloth_fit::error::Error> for Failure {
+    fn from(error: cloth_fit::error::Error) -> Self {
+        Self::Fit(error)
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl Failure {
+    /// 1 where the operating system refused, 3 where the input is bad.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Output(_) | Self::Fit(cloth_fit::error::Error::Io { .. }) => 1,
+            Self::Fit(_) => 3,
+        }
+    }
+
+    /// What happened and why: the chain of causes on one line.
+    pub fn in_words(&self) -> String {
+        let error = match self {
+            Self::Output(error) => return format!("standard output: {error}"),
+            Self::Fit(error) => error,
+        };
+        let mut words = error.to_string();
+        let mut cause = error.source();
+        while let Some(error) = cause {
+            // Some errors say their cause themselves.
+            let more = error.to_string();
+            if !words.contains(&more) {
+                words = format!("{words}: {more}");
+            }
+            cause = error.source();
+        }
+        words
+    }
+}

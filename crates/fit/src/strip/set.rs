@@ -1,0 +1,127 @@
+//! A sequence into a measurement set on disk, which is made if there is none.
+
+use crate::error::{Error, Result};
+use crate::frame::{Fabric, MeasurementSet, Sequence};
+use crate::io::{read_fabric, write_sequence, write_set};
+use std::path::{Path, PathBuf};
+
+/// Two numbers that differ by less are one number written twice.
+const SAME: f64 = 1e-6;
+
+/// What is known of the sample. A new set needs name and areal density; an old one must agree with what is given.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sample {
+    /// Name of the fabric.
+    pub name: Option<String>,
+    /// Mass per area, kg/m².
+    pub areal_density: Option<f64>,
+    /// Thickness, m.
+    pub thickness: Option<f64>,
+}
+
+/// What was done to the set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Added {
+    /// It was made, with this sequence.
+    NewSet,
+    /// It has one sequence more.
+    NewSequence,
+    /// Its sequence of that name is another one now.
+    Replaced,
+}
+
+/// Adds a sequence to a set's folder; makes the set if there is no `fabric.toml`.
+///
+/// * `replace` — an older sequence of that name may be replaced, with all that its folder holds
+///
+/// # Errors
+/// What is known of the sample is not enough for a new set, or not what an old one says; a sequence of that name
+/// exists; the folder holds something other than a set; the sequence could not be read back. Nothing is written then.
+/// Or the operating system refuses.
+pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, replace: bool) -> Result<Added> {
+    let fabric_file = set_folder.join("fabric.toml");
+    if set_folder.exists() && !set_folder.is_dir() {
+        return Err(Error::input(set_folder, None, "folder", "something else", "a set's folder, or nothing"));
+    }
+    if !fabric_file.exists() {
+        check_parent(set_folder)?;
+        let fabric = new_fabric(&fabric_file, sample, sequence)?;
+        write_set(set_folder, &MeasurementSet { fabric, sequences: vec![sequence.clone()] })?;
+        return Ok(Added::NewSet);
+    }
+    check_agreement(&fabric_file, sample, &read_fabric(set_folder)?)?;
+    let folder = set_folder.join(&sequence.name);
+    let exists = folder.exists();
+    if exists && !replace {
+        return Err(Error::input(
+            &folder,
+            None,
+            "sequence",
+            "one of that name",
+            "a new name, or leave to replace it",
+        ));
+    }
+    write_sequence(set_folder, sequence)?;
+    Ok(if exists { Added::Replaced } else { Added::NewSequence })
+}
+
+fn check_parent(set_folder: &Path) -> Result<()> {
+    let parent = match set_folder.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
+        _ => PathBuf::from("."),
+    };
+    if parent.is_dir() {
+        return Ok(());
+    }
+    Err(Error::input(&parent, None, "folder", "nothing", "a folder to make the set in"))
+}
+
+/// The sample of a new set. Its extents are those of the sequence's specimen along the yarns.
+fn new_fabric(path: &Path, sample: &Sample, sequence: &Sequence) -> Result<Fabric> {
+    let missing = |field: &str, expected: &str| {
+        Error::input(
+            path,
+            None,
+            field,
+            "no such file and no value given",
+            format!("{expected}, for a new set"),
+        )
+    };
+    let extent = |axis: usize| {
+        let coordinates = sequence.mesh.material.iter().map(|material| material[axis]);
+        coordinates.clone().fold(f64::MIN, f64::max) - coordinates.fold(f64::MAX, f64::min)
+    };
+    Ok(Fabric {
+        name: sample.name.clone().ok_or_else(|| missing("name", "the fabric's name"))?,
+        width_m: extent(0),
+        height_m: extent(1),
+        areal_density_kg_m2: sample
+            .areal_density
+            .ok_or_else(|| missing("areal_density_kg_m2", "the mass per area"))?,
+        thickness_m: sample.thickness,
+        source: None,
+        notes: None,
+    })
+}
+
+/// Refuses another fabric's sequence.
+fn check_agreement(path: &Path, sample: &Sample, fabric: &Fabric) -> Result<()> {
+    let refuse = |field: &str, found: String, given: String| {
+        Err(Error::input(path, None, field, found, format!("{given}, the value given (or give none)")))
+    };
+    if let Some(name) = sample.name.as_ref().filter(|name| **name != fabric.name) {
+        return refuse("name", fabric.name.clone(), name.clone());
+    }
+    let numbers = [
+        ("areal_density_kg_m2", sample.areal_density, Some(fabric.areal_density_kg_m2)),
+        ("thickness_m", sample.thickness, fabric.thickness_m),
+    ];
+    for (field, given, found) in numbers {
+        let Some(given) = given else { continue };
+        if !found.is_some_and(|found| (found - given).abs() <= SAME * given.abs()) {
+            let found = found.map_or("nothing".into(), |found| found.to_string());
+            return refuse(field, found, given.to_string());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,139 @@
+//! What the table of a strip test does not say, and what of it to take.
+
+use super::column::Column;
+use crate::error::{Error, Result};
+use crate::frame::Kind;
+use cloth_sim::mesh::Mesh;
+use nalgebra::{Rotation2, Vector2, Vector3};
+use std::f64::consts::FRAC_PI_4;
+use std::ops::RangeInclusive;
+
+/// No strip is longer or wider, m.
+const LARGEST: f64 = 10.0;
+
+/// How a strip was cut: which way it was pulled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Along the weft yarns.
+    Weft,
+    /// Along the warp yarns.
+    Warp,
+    /// At 45° to both.
+    Bias,
+}
+
+impl Direction {
+    /// The kind of its sequence.
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Weft => Kind::StretchWeft,
+            Self::Warp => Kind::StretchWarp,
+            Self::Bias => Kind::StretchBias,
+        }
+    }
+}
+
+/// How the table tells the clamps' distance.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Extension {
+    /// The distance itself, a length.
+    Separation(Column),
+    /// What was added to the gauge length, a length.
+    Displacement(Column),
+    /// What was added to the gauge length, divided by it (engineering strain).
+    Strain(Column),
+}
+
+/// A strip test: what the table does not say, and what of the table to take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StripTest {
+    /// Name of the sequence. Default: its kind.
+    pub name: String,
+    /// Which way the strip was pulled.
+    pub direction: Direction,
+    /// Distance of the clamps at which the strip lies free and straight, m.
+    pub gauge: f64,
+    /// Width of the strip, across the pull, m.
+    pub width: f64,
+    /// The clamps' distance.
+    pub extension: Extension,
+    /// The load cell's reading, positive in tension.
+    pub force: Column,
+    /// The column that numbers the branches of the test. Default: `branch` if the table has it; else branches are
+    /// found where the extension turns back by more than 2 % of its range, and numbered from 0.
+    pub branch_column: Option<String>,
+    /// The branches to take. Default: all.
+    pub branches: Option<Vec<usize>>,
+    /// The rows to look at, both ends included; the first row below the header is 1, blank lines do not count.
+    /// `usize::MAX` = the last one. Default: all.
+    pub rows: Option<RangeInclusive<usize>>,
+    /// Take the first row of every branch and then each so many-th. Default: 1, every row.
+    pub every: usize,
+    /// Standard deviation of the load cell, N. Default: not known.
+    pub force_noise: Option<f64>,
+}
+
+impl StripTest {
+    /// A test with the defaults above.
+    pub fn new(direction: Direction, gauge: f64, width: f64, extension: Extension, force: Column) -> Self {
+        Self {
+            name: direction.kind().to_string(),
+            direction,
+            gauge,
+            width,
+            extension,
+            force,
+            branch_column: None,
+            branches: None,
+            rows: None,
+            every: 1,
+            force_noise: None,
+        }
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first one that is outside what it may be.
+    pub fn validate(&self) -> Result<()> {
+        let refuse = |field, found: String, expected: &str| {
+            Err(Error::Setting { field, found, expected: expected.into() })
+        };
+        if self.name.is_empty() {
+            return refuse("name", "nothing".into(), "a name for the sequence");
+        }
+        for (field, value) in [("gauge", self.gauge), ("width", self.width)] {
+            if !(value > 0.0 && value <= LARGEST) {
+                return refuse(field, value.to_string(), "a length above 0 and at most 10 m (millimetres?)");
+            }
+        }
+        if self.every == 0 {
+            return refuse("every", "0".into(), "1 for every row, 2 for every second, …");
+        }
+        if self.branches.as_ref().is_some_and(Vec::is_empty) {
+            return refuse("branches", "none".into(), "one branch at least");
+        }
+        match self.force_noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
+            Some(noise) => refuse("force_noise", noise.to_string(), "a standard deviation above 0, in N"),
+            None => Ok(()),
+        }
+    }
+
+    /// Rest mesh and direction of the pull; vertices 0 and 1 are in the fixed clamp, 2 and 3 in the moving one.
+    pub(super) fn specimen(&self) -> cloth_sim::error::Result<(Mesh, Vector3<f64>)> {
+        let (l, w) = (self.gauge, self.width);
+        let (corners, triangles, pull) = match self.direction {
+            Direction::Warp => {
+                ([[0.0, 0.0], [w, 0.0], [0.0, l], [w, l]], [[0, 1, 3], [0, 3, 2]], Vector3::y())
+            }
+            Direction::Weft | Direction::Bias => {
+                ([[0.0, 0.0], [0.0, w], [l, 0.0], [l, w]], [[0, 2, 3], [0, 3, 1]], Vector3::x())
+            }
+        };
+        let turn = Rotation2::new(if self.direction == Direction::Bias { FRAC_PI_4 } else { 0.0 });
+        let corners = corners.map(Vector2::from);
+        let positions = corners.iter().map(|corner| Vector3::new(corner.x, corner.y, 0.0)).collect();
+        let material = corners.iter().map(|corner| turn * corner).collect();
+        Ok((Mesh::new(positions, material, triangles.to_vec())?, pull))
+    }
+}
