@@ -56,8 +56,13 @@ impl Default for Settings {
             compression: Compression::ZeroStrain,
             equilibrium: equilibrium::Settings::default(),
             growth_gain: 0.01,
-            // A share of 1e-6 of the sum of squares is far below any noise.
-            outer: Options { gain_tolerance: 1e-6, max_iterations: 50, ..Options::default() },
+            // A share of 1e-6 of the sum of squares, or of 1e-7 of the stiffnesses, is far below any noise.
+            outer: Options {
+                gain_tolerance: 1e-6,
+                step_tolerance: 1e-7,
+                max_iterations: 50,
+                ..Options::default()
+            },
         }
     }
 }

@@ -33,7 +33,8 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
     sync_folder(&folder)
 }
 
-/// Builds a whole folder in a temporary neighbour, then puts it in the place of the old one, which is deleted.
+/// Builds a whole folder in a temporary neighbour, then puts it in the place of the old one, which is deleted. The
+/// folders above it are made.
 ///
 /// If `build` fails, the temporary folder is removed and the old one stays as it was.
 ///
@@ -47,6 +48,7 @@ pub fn replace_folder(path: &Path, build: impl FnOnce(&Path) -> Result<()>) -> R
     let target = old.clone().unwrap_or_else(|| path.to_path_buf());
     let folder = parent(&target);
     let failed = |source| Error::io(path, source);
+    fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
     let mut temporary = temporary(0o777).tempdir_in(&folder).map_err(failed)?;
     build(temporary.path())?;
     sync_folder(temporary.path())?;
@@ -146,12 +148,12 @@ mod tests {
     #[test]
     fn a_folder_is_created_and_replaced() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("set");
+        let path = folder.path().join("sets/set");
         for name in ["old", "new"] {
             replace_folder(&path, |temporary| write_file(&temporary.join(name), b"1")).unwrap();
             assert_eq!(names(&path), [name]);
         }
-        assert_eq!(names(folder.path()), ["set"]);
+        assert_eq!(names(&folder.path().join("sets")), ["set"]);
     }
 
     #[test]

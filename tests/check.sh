@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# What to run before a push: tests, format, lints, documentation. `tests/check.sh --full` runs the ignored tests too,
+# which take the full counts (100 000 states, 100 seeds).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+cargo test --workspace
+cargo fmt --all -- --check
+cargo clippy --workspace --all-targets -- -D warnings
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+if [ "${1:-}" = "--full" ]; then
+    cargo test --workspace -- --ignored --nocapture
+fi
