@@ -1,69 +1,213 @@
-//! Simulate known curves, add noise, fit, compare.
+//! Known curves, measured by the virtual rig, fitted, compared.
+//!
+//! ```text
+//! rig: StVK on 31×31 nodes, '\'         fit: 13×13 nodes, '/'
+//!   ┌──────────────┐
+//! ◀─│ bar      bar │─▶   weft and warp, load and release; shapes on a mesh of their own
+//!   └──────────────┘
+//! ```
+//!
+//! The stress comes back within 1 % without noise and within 2 % with it (relative L2 over the visited range), whatever
+//! else the sequence brings: weight, noise in the clips' poses, holes in the shapes, hysteresis.
 
+use cloth_fit::frame::{MeasurementSet, Phase};
+use cloth_fit::report::StageReport;
 use cloth_fit::rig::{KnownFabric, Rig};
-use cloth_fit::stage::stretch::fit;
+use cloth_fit::stage::stretch::{fit, predict};
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
+use fit_cloth_tests::stress_error;
+use nalgebra::{Rotation3, Vector3};
 use std::path::Path;
 
-#[test]
-fn denim() {
+fn denim() -> KnownFabric {
     let text = include_str!("../fixtures/fabrics/cotton-denim.toml");
-    let fabric = KnownFabric::parse(Path::new("cotton-denim.toml"), text).unwrap();
-    for noise in [false, true] {
-        let set = Rig { noise, ..Rig::default() }.measure(&fabric).unwrap();
-        for model in Model::ALL {
-            for component in [Component::StretchWeft, Component::StretchWarp] {
-                let settings = Settings { model, ..Settings::default() };
-                let report = fit(&set, component, &settings, &mut Watch::default()).unwrap().unwrap();
-                println!(
-                    "{model} {component} noise {noise}: {:?} {:?}",
-                    report.curve.curve.stiffnesses(),
-                    report.curve.visited
-                );
-                for level in &report.levels {
-                    println!(
-                        "   {} points rms {:.3e} {} iterations {}",
-                        level.points,
-                        level.rms,
-                        level.iterations.len(),
-                        level.status
-                    );
-                }
-                println!(
-                    "   {:?} {:?} {:.3} s; {}",
-                    report.scatter, report.counters, report.seconds, report.growth
-                );
-                for s in &report.sequences {
-                    println!(
-                        "   {} frames {} rest {} planar {} nodes {:?} rms {:.3e} of {:.3} pos {:?} hyst {:?}",
-                        s.name,
-                        s.frames,
-                        s.at_rest,
-                        s.planar,
-                        s.nodes,
-                        s.force_rms,
-                        s.force_largest,
-                        s.position_rms,
-                        s.hysteresis
-                    );
-                }
-                if model == Model::Stvk {
-                    let truth = fabric.curves().unwrap();
-                    let truth = truth.get(component).unwrap();
-                    let (mut e, mut t, mut inside) = (0.0, 0.0, 0);
-                    for s in &report.curve.samples {
-                        e += (s.stress - truth.stress(s.strain)).powi(2);
-                        t += truth.stress(s.strain).powi(2);
-                        if let Some([l, h]) = s.band {
-                            if truth.stress(s.strain) >= l && truth.stress(s.strain) <= h {
-                                inside += 1;
-                            }
-                        }
-                    }
-                    println!("   error {:.4} %, inside {inside}", 100.0 * (e / t).sqrt());
-                }
-            }
+    KnownFabric::parse(Path::new("cotton-denim.toml"), text).unwrap()
+}
+
+fn rig() -> Rig {
+    Rig { nodes: [31, 31], measured: [14, 14], ..Rig::default() }
+}
+
+fn measure(rig: &Rig) -> MeasurementSet {
+    rig.measure(&denim()).unwrap()
+}
+
+fn settings(model: Model) -> Settings {
+    Settings { model, nodes: Some([13, 13]), ..Settings::default() }
+}
+
+fn fit_weft(set: &MeasurementSet, model: Model) -> StageReport {
+    fit(set, Component::StretchWeft, &settings(model), &mut Watch::default()).unwrap().unwrap()
+}
+
+/// Relative L2 error of the stress.
+fn error(report: &StageReport) -> f64 {
+    let curves = denim().curves().unwrap();
+    let truth = curves.get(report.component).unwrap();
+    stress_error(&report.curve.samples, &|strain| truth.stress(strain))
+}
+
+#[test]
+fn denim_comes_back() {
+    for (noise, allowed) in [(false, 0.01), (true, 0.02)] {
+        let set = measure(&Rig { noise, ..rig() });
+        for component in [Component::StretchWeft, Component::StretchWarp] {
+            let report =
+                fit(&set, component, &settings(Model::Stvk), &mut Watch::default()).unwrap().unwrap();
+            println!("{component}, noise {noise}: stress within {:.2} %", 100.0 * error(&report));
+            assert!(report.converged && error(&report) <= allowed);
+            assert_eq!(report.curve.curve.len(), 5);
+            let sequence = &report.sequences[0];
+            assert!(sequence.planar && sequence.at_rest == 2 && sequence.frames == 23);
+            assert!(sequence.position_rms.unwrap() < 1.5e-4);
         }
     }
+}
+
+#[test]
+fn other_models_meet_the_forces_that_the_truth_gives() {
+    let set = measure(&rig());
+    for model in [Model::SoftConstraint, Model::Springs] {
+        let report = fit_weft(&set, model);
+        let sequence = &report.sequences[0];
+        println!("{model}: rms {:.2e} N of {:.1} N", sequence.force_rms, sequence.force_largest);
+        assert!(report.converged && sequence.force_rms < 0.003 * sequence.force_largest);
+    }
+}
+
+#[test]
+fn noise_in_the_clips_makes_the_motion_spatial_and_is_borne() {
+    let set = measure(&Rig { clip_noise: true, ..rig() });
+    let report = fit_weft(&set, Model::Stvk);
+    println!("clip noise: stress within {:.2} %, dropped {:?}", 100.0 * error(&report), report.dropped);
+    // Two clips with 0.075 mm each: 2 % of the largest extension, 5 % of the force there, averaged over 23 frames.
+    assert!(report.converged && error(&report) < 0.05);
+    assert!(report.scatter.misfit > 0.0, "noise of the clips is more than noise of the forces");
+}
+
+#[test]
+fn weight_across_the_sheet_makes_it_sag_and_is_borne() {
+    let mut set = measure(&Rig { noise: false, ..rig() });
+    for sequence in &mut set.sequences {
+        sequence.gravity = Vector3::new(0.0, 0.0, -9.81);
+        // What cords must now carry: half of the sheet each, and the clip.
+        let share = 0.5 * set.fabric.areal_density_kg_m2 * 0.01;
+        for cord in sequence.frames.iter_mut().flat_map(|frame| &mut frame.cords) {
+            cord.force.z += 9.81 * (share + sequence.clips[cord.clip].mass_kg);
+        }
+    }
+    let report = fit_weft(&set, Model::Stvk);
+    println!(
+        "sagging: stress within {:.2} %, rms {:.2e} N",
+        100.0 * error(&report),
+        report.sequences[0].force_rms
+    );
+    assert!(report.converged && !report.sequences[0].planar);
+    // The truth did not sag: at the lowest forces the sheet now does, by a few per cent of the force.
+    assert!(
+        error(&report) < 0.02 && report.sequences[0].force_rms < 0.01 * report.sequences[0].force_largest
+    );
+}
+
+#[test]
+fn a_specimen_anywhere_in_space_fits_alike() {
+    let set = measure(&rig());
+    let straight = fit_weft(&set, Model::Stvk);
+    let mut turned = set.clone();
+    let rotation = Rotation3::new(Vector3::new(0.7, -1.1, 0.4));
+    let shift = Vector3::new(0.3, 0.1, -0.2);
+    for sequence in &mut turned.sequences {
+        let place = |p: &Vector3<f64>| rotation * p + shift;
+        sequence.mesh.positions.iter_mut().for_each(|p| *p = place(p));
+        for frame in &mut sequence.frames {
+            for pose in &mut frame.poses {
+                // x' = R (x_rest' − s) turned and moved: conjugation by the motion.
+                let motion = nalgebra::Isometry3::from_parts(shift.into(), rotation.into());
+                *pose = motion * *pose * motion.inverse();
+            }
+            frame.cords.iter_mut().for_each(|cord| cord.force = rotation * cord.force);
+            frame.positions.iter_mut().flatten().for_each(|p| *p = place(p));
+        }
+    }
+    let report = fit_weft(&turned, Model::Stvk);
+    assert!(report.sequences[0].planar);
+    for (a, b) in straight.curve.curve.stiffnesses().iter().zip(report.curve.curve.stiffnesses()) {
+        assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_shape_with_holes_is_compared_where_it_was_seen() {
+    let mut set = measure(&rig());
+    for frame in set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames) {
+        let positions = frame.positions.as_mut().unwrap();
+        positions.iter_mut().step_by(7).for_each(|p| *p = Vector3::repeat(f64::NAN));
+    }
+    let report = fit_weft(&set, Model::Stvk);
+    assert!(report.converged && error(&report) < 0.02);
+    assert!(report.sequences[0].position_rms.unwrap() < 1.5e-4);
+}
+
+#[test]
+fn the_curve_runs_through_the_mean_of_the_hysteresis_band() {
+    let mut set = measure(&rig());
+    // The top frame belongs to one branch only; without it every extension was measured in both.
+    set.sequences.iter_mut().for_each(|sequence| drop(sequence.frames.remove(rig().frames)));
+    for frame in set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames) {
+        let factor = if frame.phase == Some(Phase::Unloading) { 0.8 } else { 1.2 };
+        frame.cords.iter_mut().for_each(|cord| cord.force *= factor);
+    }
+    let report = fit_weft(&set, Model::Stvk);
+    let hysteresis = report.sequences[0].hysteresis.unwrap();
+    println!("loading {:.3}, unloading {:.3} of the curve", hysteresis.loading, hysteresis.unloading);
+    assert!((hysteresis.loading / hysteresis.unloading - 1.5).abs() < 0.01);
+    assert_eq!(report.curve.curve.len(), 5, "the hysteresis must not hide what more points bring");
+    assert!(error(&report) < 0.01, "{}", error(&report));
+    assert!(report.scatter.misfit > 0.1);
+}
+
+#[test]
+fn what_the_frames_cannot_tell_is_said() {
+    let mut set = measure(&Rig { noise: false, ..rig() });
+    for sequence in &mut set.sequences {
+        let frame = sequence.frames[8].clone();
+        sequence.frames = vec![frame.clone(), frame.clone(), frame];
+    }
+    let report = fit_weft(&set, Model::Stvk);
+    // One strain tells one number: a constant stiffness.
+    assert_eq!((report.curve.curve.len(), report.curve.rank), (1, 1));
+    assert!(report.sequences[0].force_rms < 1e-6 * report.sequences[0].force_largest);
+}
+
+#[test]
+fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
+    let report = fit_weft(&measure(&rig()), Model::Stvk);
+    let other = measure(&Rig { seed: 77, frames: 7, ..rig() });
+    let predicted =
+        predict(&other, Component::StretchWeft, &report.curve.curve, &settings(Model::Stvk)).unwrap();
+    let sequence = &predicted[0];
+    println!("prediction: rms {:.2e} N of {:.1} N", sequence.force_rms, sequence.force_largest);
+    assert!(sequence.force_rms < 0.002 * sequence.force_largest && sequence.frames == 13);
+}
+
+#[test]
+fn published_constraints_allow_what_the_stable_ones_forbid() {
+    // A law that softens: its tangent falls below zero.
+    let law = |strain: f64| 1000.0 * strain * (-strain / 0.02f64).exp();
+    let set = fit_cloth_tests::UniformStretch {
+        model: Model::Stvk,
+        law: &law,
+        largest: 0.06,
+        frames: 30,
+        noise: None,
+    }
+    .measure();
+    let fit_with = |constraints| {
+        let settings = Settings { constraints, nodes: Some([7, 7]), ..Settings::default() };
+        fit(&set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap()
+    };
+    let stable = fit_with(cloth_fit::stage::Constraints::Stable);
+    assert!(stable.curve.active_constraints > 0);
+    assert!(stable.curve.samples.windows(2).all(|pair| pair[1].stress > pair[0].stress));
 }

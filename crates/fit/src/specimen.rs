@@ -95,7 +95,7 @@ impl Rectangle {
         };
         // Summed over triangles the normal does not care how fine the mesh is; it points to where weft × warp does.
         let corner = |triangle: &[usize; 3]| triangle.map(|vertex| mesh.positions[vertex]);
-        let normals = mesh.triangles.iter().map(|t| corner(t)).map(|[a, b, c]| (b - a).cross(&(c - a)));
+        let normals = mesh.triangles.iter().map(corner).map(|[a, b, c]| (b - a).cross(&(c - a)));
         let double_area: Vector3<f64> = normals.clone().sum();
         let normal = double_area.normalize();
         let centre = mesh.positions.iter().sum::<Vector3<f64>>() / mesh.len() as f64;
