@@ -12,6 +12,7 @@
 pub mod command;
 pub mod failure;
 pub mod options;
+pub mod plot;
 pub mod progress;
 pub mod text;
 

@@ -1,11 +1,12 @@
 //! What a fit found, as plain data: nothing here computes.
 
-use crate::frame::Kind;
+use crate::frame::{Kind, Phase};
 use crate::gauss_newton::Iteration;
 use crate::simulation::{Counters, DroppedFrame};
 use crate::uncertainty::Scatter;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Model};
+use nalgebra::Vector3;
 
 /// A fitted curve with its uncertainty.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,8 +85,12 @@ pub struct Hysteresis {
 pub struct ForceRow {
     /// Index of the frame in its sequence.
     pub frame: usize,
+    /// Loading or unloading.
+    pub phase: Phase,
     /// Index of the clip.
     pub clip: usize,
+    /// Unit direction of the component, in the specimen's own frame.
+    pub direction: Vector3<f64>,
     /// Mean relative change of distance between the clips.
     pub extension: f64,
     /// Measured, N.

@@ -100,15 +100,23 @@ fn residual_table(stages: &[StageReport]) -> String {
     table
 }
 
-/// Every measured force component beside its simulation, for plots.
+/// Every measured force component (its direction x, y, z in the specimen's frame) beside its simulation, for plots.
 fn force_table(stages: &[StageReport]) -> String {
-    let mut table = String::from("sequence,frame,clip,extension,measured_n,simulated_n\n");
+    let mut table = String::from("sequence,frame,clip,x,y,z,extension,measured_n,simulated_n\n");
     for s in stages.iter().flat_map(|stage| &stage.sequences) {
         for row in &s.forces {
             let _ = writeln!(
                 table,
-                "{},{},{},{},{},{}",
-                s.name, row.frame, row.clip, row.extension, row.measured, row.simulated
+                "{},{},{},{},{},{},{},{},{}",
+                s.name,
+                row.frame,
+                row.clip,
+                row.direction.x,
+                row.direction.y,
+                row.direction.z,
+                row.extension,
+                row.measured,
+                row.simulated
             );
         }
     }

@@ -94,7 +94,9 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
             report.force_largest = report.force_largest.max(component.measured.abs());
             report.forces.push(ForceRow {
                 frame: frame.index,
+                phase: frame.phase,
                 clip: component.clip,
+                direction: component.direction,
                 extension: frame.extension,
                 measured: component.measured,
                 simulated,

@@ -3,6 +3,7 @@
 use super::Outcome;
 use crate::failure::Failure;
 use crate::options::{FitFlags, Telling};
+use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::text;
 use clap::Args;
@@ -24,7 +25,7 @@ Example:
   fit-cloth stretch fixtures/cotton-denim --out out
   fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out
 
-Writes material.json, curves/*.csv, residuals.csv and forces.csv; with --model all, a folder for each model.";
+Writes material.json, curves/*.csv, residuals.csv, forces.csv and plots/*.svg; with --model all, a folder for each model.";
 
 /// `fit-cloth stretch`.
 #[derive(Debug, Clone, Args)]
@@ -57,7 +58,9 @@ pub fn run(options: &StretchOptions, telling: Telling, output: &mut impl Write) 
     };
     replace_folder(&folder, |temporary| {
         results.iter().try_for_each(|(settings, stages)| {
-            write_result(&in_folder(settings.model, temporary), &set, settings, stages)
+            let folder = in_folder(settings.model, temporary);
+            write_result(&folder, &set, settings, stages)?;
+            write_plots(&folder, stages)
         })
     })?;
     if telling.json {
