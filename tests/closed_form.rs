@@ -40,7 +40,7 @@ fn measure(model: Model, law: &dyn Fn(f64) -> f64, largest: f64, seed: Option<u6
     let mut random = StdRng::seed_from_u64(seed.unwrap_or(0));
     let mut normal = || StandardNormal.sample(&mut random);
     let noise = seed.map(|_| (FORCE_NOISE, &mut normal as &mut dyn FnMut() -> f64));
-    UniformStretch { model, law, largest, frames: 40, noise }.measure()
+    UniformStretch { model, law, largest, frames: 40, grip: 0.0, noise }.measure()
 }
 
 #[test]
@@ -65,6 +65,18 @@ fn five_points_meet_laws_that_are_no_spline() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn bars_of_any_depth_leave_the_cloth_between_them() {
+    let (_, law, largest, allowed, _) = LAWS[0];
+    for grip in [0.01, 0.02] {
+        let set = UniformStretch { model: Model::Stvk, law: &law, largest, frames: 40, grip, noise: None }
+            .measure();
+        let error = stress_error(&fit_weft(&set, Model::Stvk, [9, 9]).curve.samples, &law);
+        println!("bars {} mm deep: {:.3} %", 1e3 * grip, 100.0 * error);
+        assert!(error <= allowed);
     }
 }
 

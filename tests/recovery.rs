@@ -181,6 +181,15 @@ fn what_the_frames_cannot_tell_is_said() {
 }
 
 #[test]
+fn a_flipped_force_sign_is_named() {
+    let mut set = measure(&rig());
+    let cords = set.sequences.iter_mut().flat_map(|s| &mut s.frames).flat_map(|frame| &mut frame.cords);
+    cords.for_each(|cord| cord.force = -cord.force);
+    let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
+    assert!(error.to_string().contains("check its sign"), "{error}");
+}
+
+#[test]
 fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
     let report = fit_weft(&measure(&rig()), Model::Stvk);
     let other = measure(&Rig { seed: 77, frames: 7, ..rig() });
@@ -200,6 +209,7 @@ fn published_constraints_allow_what_the_stable_ones_forbid() {
         law: &law,
         largest: 0.06,
         frames: 30,
+        grip: 0.0,
         noise: None,
     }
     .measure();

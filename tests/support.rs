@@ -15,6 +15,8 @@ pub struct UniformStretch<'a> {
     pub law: &'a dyn Fn(f64) -> f64,
     /// Largest strain.
     pub largest: f64,
+    /// How deep the bars grip, a multiple of 10 mm; the cloth between them is stretched.
+    pub grip: f64,
     /// Frames.
     pub frames: usize,
     /// Noise to add to each force component, N; also told to the fit.
@@ -25,7 +27,8 @@ impl UniformStretch<'_> {
     /// The measurement set.
     pub fn measure(self) -> MeasurementSet {
         let side = 0.1;
-        let grid = Grid { columns: 2, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
+        let columns = if self.grip > 0.0 { 11 } else { 2 };
+        let grid = Grid { columns, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
         let noise = self.noise.as_ref().map(|(force, _)| Noise { position_m: None, force_n: Some(*force) });
         let mut draw = self.noise;
         let mut noisy = |force: Vector3<f64>| match &mut draw {
@@ -45,13 +48,18 @@ impl UniformStretch<'_> {
                 Frame {
                     poses: vec![
                         Isometry3::identity(),
-                        Isometry3::translation(side * (stretch - 1.0), 0.0, 0.0),
+                        Isometry3::translation((side - 2.0 * self.grip) * (stretch - 1.0), 0.0, 0.0),
                     ],
                     cords,
                     ..Frame::default()
                 }
             })
             .collect();
+        let mesh = grid.mesh().expect("a grid of some nodes");
+        let gripped = |inside: &dyn Fn(f64) -> bool| {
+            (0..mesh.len()).filter(|&vertex| inside(mesh.positions[vertex].x)).collect::<Vec<_>>()
+        };
+        let (low, high) = (gripped(&|x| x < self.grip + 1e-6), gripped(&|x| x > side - self.grip - 1e-6));
         let clip = |name: &str, vertices| Clip { name: name.into(), mass_kg: 0.0, vertices };
         MeasurementSet {
             fabric: Fabric {
@@ -70,8 +78,8 @@ impl UniformStretch<'_> {
                 noise,
                 force_direction: None,
                 table: None,
-                mesh: grid.mesh().expect("two by two nodes make a grid"),
-                clips: vec![clip("low", vec![0, 2]), clip("high", vec![1, 3])],
+                mesh,
+                clips: vec![clip("low", low), clip("high", high)],
                 frames,
             }],
         }

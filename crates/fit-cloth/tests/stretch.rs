@@ -52,8 +52,7 @@ fn the_fixture_ends_with_two_curves_and_a_residual_table() {
     let stdout = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(stdout.contains("rms force [N]") && stdout.contains("stretch-weft: converged"), "{stdout}");
-    let names: Vec<String> =
-        files(&out).iter().map(|file| text(file.strip_prefix(&out).unwrap())).collect();
+    let names: Vec<String> = files(&out).iter().map(|file| text(file.strip_prefix(&out).unwrap())).collect();
     assert_eq!(
         names,
         [
@@ -181,8 +180,19 @@ fn a_rig_makes_a_set_that_can_be_fitted() {
     let set = folder.path().join("denim");
     let fabric = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/fabrics/cotton-denim.toml");
     for fabric in ["cotton-denim".to_string(), text(&fabric)] {
-        let arguments =
-            ["rig", "--fabric", &fabric, "--out", &text(&set), "--nodes", "13x13", "--measured", "5x5", "--frames", "6"];
+        let arguments = [
+            "rig",
+            "--fabric",
+            &fabric,
+            "--out",
+            &text(&set),
+            "--nodes",
+            "13x13",
+            "--measured",
+            "5x5",
+            "--frames",
+            "6",
+        ];
         assert!(run(&arguments).status.success());
     }
     assert!(fit(&set, &folder.path().join("out"), &[]).status.success());

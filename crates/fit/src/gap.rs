@@ -1,14 +1,13 @@
 //! A start from the equilibrium gap: one linear least squares, no simulation.
 //!
-//! Shapes and forces are both measured (or the shape is close to the clips' blended motion), and stress is linear in
-//! the control values. So is the virtual work of the stresses under each clip's field φ, which balances that clip's
-//! force alone:
+//! Stress is linear in the control values, and between clips the cloth is close to their blended motion x̃. So is the
+//! virtual work of the stresses there under each clip's field φ, which balances that clip's force alone:
 //!
 //! ```text
 //! minimise over k   Σ_frames Σ_clips | Σ_n φ_c(n) g_n(x̃, k) − F̃_c |²     subject to the curve's constraints
 //! ```
 //!
-//! Noise in the shapes biases it: it is a start, not a result. Source: virtual fields and equilibrium gap, Grédiac et
+//! Measured shapes would serve too, but their noise biases it. Either way it is a start, not a result. Source: virtual fields and equilibrium gap, Grédiac et
 //! al. 2006; Claire et al. 2004.
 
 use crate::gauss_newton::Domain;

@@ -30,7 +30,7 @@ pub struct Replica {
     pub fields: Vec<Vec<f64>>,
     /// The frames that are used.
     pub frames: Vec<ReplicaFrame>,
-    /// How many frames of the sequence were left out because nothing was stretched there.
+    /// How many frames of the sequence were left out because nothing was stretched there, or no force was measured.
     pub frames_at_rest: usize,
     /// Two unknowns a node.
     pub planar: bool,
@@ -100,18 +100,19 @@ impl Replica {
         let cloth = Cloth::new(&problem).map_err(mechanics)?;
         let extensions: Vec<f64> = starts.iter().map(|x| blend.extension(&specimen, x)).collect();
         let largest = extensions.iter().fold(0.0f64, |m, &e| m.max(e));
+        // A clip bears its own weight, and that of the cloth inside it.
+        let clips = sequence.clips.iter().zip(&specimen.gripped);
+        let weights: Vec<Vector3<f64>> =
+            clips.map(|(clip, gripped)| gravity * (clip.mass_kg + areal_density * gripped)).collect();
         let mut frames = Vec::new();
-        for (index, (frame, mut start)) in sequence.frames.iter().zip(starts).enumerate() {
+        for (index, (frame, start)) in sequence.frames.iter().zip(starts).enumerate() {
             // A sheet without shear that is not stretched is singular: such a frame carries no information.
             if extensions[index] <= 1e-3 * largest {
                 continue;
             }
-            let forces = force_components(sequence, frame, &specimen, &gravity, planar);
+            let forces = force_components(sequence, frame, &specimen, &weights, planar);
             if forces.is_empty() {
                 continue;
-            }
-            if planar {
-                start.chunks_exact_mut(3).for_each(|p| p[2] = 0.0);
             }
             let phase = frame.phase.unwrap_or_else(|| phase_of(&extensions, index));
             let observed = frame.positions.as_ref().map(|positions| observed(sequence, &specimen, positions));
@@ -182,7 +183,13 @@ fn clamped_nodes(sequence: &Sequence, specimen: &Specimen) -> Result<Vec<Option<
             }
         }
     }
-    Ok(clamped)
+    match (0..sequence.clips.len()).find(|&clip| !clamped.contains(&Some(clip))) {
+        Some(clip) => Err(bad(
+            format!("clip {} holds no node of its own", sequence.clips[clip].name),
+            "clips that do not overlap, on the specimen",
+        )),
+        None => Ok(clamped),
+    }
 }
 
 /// Where a clip takes a rest point, in world coordinates.
@@ -311,7 +318,7 @@ fn force_components(
     sequence: &Sequence,
     frame: &Frame,
     specimen: &Specimen,
-    gravity: &Vector3<f64>,
+    weights: &[Vector3<f64>],
     planar: bool,
 ) -> Vec<ForceComponent> {
     let directions = match sequence.force_direction {
@@ -320,11 +327,11 @@ fn force_components(
         None => vec![Vector3::x(), Vector3::y(), Vector3::z()],
     };
     let mut components = Vec::new();
-    for (clip, gripped) in sequence.clips.iter().enumerate() {
+    for (clip, weight) in weights.iter().enumerate() {
         let Some(force) = frame.clip_force(clip) else { continue };
         let force = specimen.turn(&force);
         // A clip is in balance: cords + its weight = what the cloth pulls with.
-        let balanced = force + gravity * gripped.mass_kg;
+        let balanced = force + weight;
         components.extend(directions.iter().map(|direction| ForceComponent {
             clip,
             direction: *direction,

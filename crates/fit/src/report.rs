@@ -17,6 +17,8 @@ pub struct CurveReport {
     pub curve: StiffnessCurve,
     /// Standard deviation of each control value; `None` where no frame sees it.
     pub deviations: Vec<Option<f64>>,
+    /// Half the 95 % band of each control value; `None` where no frame sees it.
+    pub half_bands: Vec<Option<f64>>,
     /// The strains that the measurement visited: from 0, or from the smallest where that is negative.
     pub visited: [f64; 2],
     /// 201 rows over the visited range.
@@ -104,7 +106,7 @@ pub struct ForceRow {
 pub struct Level {
     /// Control points.
     pub points: usize,
-    /// Root mean square residual, N (in units of the noise where that is known for all sequences).
+    /// Root mean square residual, N.
     pub rms: f64,
     /// Why it stopped.
     pub status: String,
@@ -132,7 +134,7 @@ pub struct StageReport {
     pub levels: Vec<Level>,
     /// Why the growth ended.
     pub growth: String,
-    /// Every level came to its minimum.
+    /// The level that was kept came to its minimum.
     pub converged: bool,
     /// What was spent.
     pub counters: Counters,

@@ -172,7 +172,7 @@ impl Rig {
         };
         let specimen = Specimen::new(&sequence, Some(self.nodes), Diagonals::Backward)?;
         // The rig's own mesh carries the truth; the measured mesh is looked up in it.
-        let truth = Sequence { mesh: specimen.mesh.clone(), ..sequence.clone() };
+        let truth = Sequence { mesh: specimen.mesh.clone(), clips: Vec::new(), ..sequence.clone() };
         let lookup = Specimen::new(&truth, Some(self.measured), Diagonals::Alternating)?;
         let ends = [end(0.0, &specimen.mesh.positions), end(length, &specimen.mesh.positions)];
         let held: Vec<Held> = ends

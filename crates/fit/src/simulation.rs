@@ -152,21 +152,7 @@ impl<'a> Simulation<'a> {
                 start_state(&replicas[replica], &replicas[replica].frames[frame], &curves)
             })
             .collect();
-        let results = simulation.solve_frames(&curves, None);
-        let (mut frames, mut states) = (Vec::new(), Vec::new());
-        for (&(replica, frame), result) in simulation.frames.iter().zip(results) {
-            if result.status == Status::Converged {
-                frames.push((replica, frame));
-                states.push(result.state);
-            } else {
-                simulation.dropped.push(DroppedFrame {
-                    sequence: replicas[replica].name.clone(),
-                    frame: replicas[replica].frames[frame].index,
-                    status: result.status,
-                });
-            }
-        }
-        (simulation.frames, simulation.states) = (frames, states);
+        simulation.settle();
         simulation
     }
 
@@ -239,11 +225,22 @@ impl<'a> Simulation<'a> {
     }
 
     /// Brings all frames to equilibrium under the curve, and returns the simulated forces along the measured components of
-    /// each, N.
+    /// each, N. Frames that have none are dropped.
     pub fn settle(&mut self) -> Vec<Vec<f64>> {
         let results = self.solve_frames(&self.curves(&self.curve), None);
-        let (states, forces) = results.into_iter().map(|result| (result.state, result.forces)).unzip();
-        self.states = states;
+        let mut forces = Vec::new();
+        self.states.clear();
+        for ((replica, frame), result) in std::mem::take(&mut self.frames).into_iter().zip(results) {
+            if result.status == Status::Converged {
+                self.frames.push((replica, frame));
+                self.states.push(result.state);
+                forces.push(result.forces);
+            } else {
+                let Replica { name, frames, .. } = &self.replicas[replica];
+                let (sequence, frame) = (name.clone(), frames[frame].index);
+                self.dropped.push(DroppedFrame { sequence, frame, status: result.status });
+            }
+        }
         forces
     }
 
@@ -305,13 +302,18 @@ impl<'a> Simulation<'a> {
             self.meter.add(&equilibrium);
             equilibrium.status
         };
+        let first = x.clone();
         let mut status = solve(&mut x);
-        if status != Status::Converged && change.is_some() {
-            // A prediction that went too far: from the frame's own start instead.
+        if status != Status::Converged && first != frames[frame].start {
+            // A measured shape or a prediction that was too far off: from the blended shape instead.
             x.copy_from_slice(&frames[frame].start);
             status = solve(&mut x);
         }
-        let (forces, derivatives, sensitivity) = self.sensitivities(&mut solver, replica, frame, curves, &x);
+        let (forces, derivatives, sensitivity) = match status {
+            Status::Converged => self.sensitivities(&mut solver, replica, frame, curves, &x),
+            // What is no equilibrium has no sensitivities.
+            _ => Default::default(),
+        };
         pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(solver);
         FrameResult { state: State { x, sensitivity }, status, forces, derivatives }
     }

@@ -27,10 +27,13 @@ pub struct Specimen {
     pub grid: Grid,
     /// Where each grid node lies in the measured mesh.
     pub samples: Vec<MeshPoint>,
+    /// Cloth inside each clip that was cut off, m².
+    pub gripped: Vec<f64>,
 }
 
 impl Specimen {
-    /// Lays a grid over a sequence's rest mesh.
+    /// Lays a grid over a sequence's rest mesh, less what lies inside bars that grip a whole side: that cloth moves rigidly,
+    /// and the grid's border falls on the bar's edge, wherever that is.
     ///
     /// * `nodes` — columns and rows; `None` = as many cells as 25×25 nodes have, near square
     ///
@@ -39,17 +42,21 @@ impl Specimen {
     pub fn new(sequence: &Sequence, nodes: Option<[usize; 2]>, diagonals: Diagonals) -> Result<Self> {
         let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
         let rectangle = Rectangle::of(sequence)?;
-        let [width, height] = rectangle.size;
+        let (free, gripped) = free_region(sequence, &rectangle);
+        let [corner, opposite] = free;
+        let [width, height] = [opposite.x - corner.x, opposite.y - corner.y];
         let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height));
         let grid = Grid { columns, rows, width, height, diagonals };
         let mut mesh = grid.mesh().map_err(mechanics)?;
         let locator = Locator::new(&sequence.mesh, &rectangle);
-        let samples: Vec<MeshPoint> = mesh.positions.iter().map(|p| locator.find(p.xy())).collect();
+        let samples: Vec<MeshPoint> = mesh.positions.iter().map(|p| locator.find(p.xy() + corner)).collect();
         for (material, sample) in mesh.material.iter_mut().zip(&samples) {
             *material = sample.interpolate(&sequence.mesh, &sequence.mesh.material);
         }
         let checked = Mesh::new(mesh.positions, mesh.material, mesh.triangles).map_err(mechanics)?;
-        Ok(Self { frame: rectangle.frame, mesh: Mesh { grid: Some(grid), ..checked }, grid, samples })
+        let mut frame = rectangle.frame;
+        frame.translation.vector -= Vector3::new(corner.x, corner.y, 0.0);
+        Ok(Self { frame, mesh: Mesh { grid: Some(grid), ..checked }, grid, samples, gripped })
     }
 
     /// The grid's nodes at rest, in world coordinates, m.
@@ -67,6 +74,37 @@ impl Specimen {
     pub fn turn(&self, world: &Vector3<f64>) -> Vector3<f64> {
         self.frame.rotation * world
     }
+}
+
+/// The rectangle between the bars that grip whole sides, as two corners, and the area inside each bar.
+fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2], Vec<f64>) {
+    let [width, height] = rectangle.size;
+    let size = Vector2::new(width, height);
+    let (mut low, mut high) = (Vector2::zeros(), size);
+    let boxes = sequence.clips.iter().map(|clip| bounds(clip.vertices.iter().map(|&v| rectangle.flat[v])));
+    let mut gripped = Vec::new();
+    for [from, to] in boxes {
+        let mut area = 0.0;
+        for (along, across) in [(0, 1), (1, 0)] {
+            let near = 1e-3 * size[along];
+            let whole_side = to[across] - from[across] > 0.98 * size[across];
+            let deep = to[along] - from[along];
+            // A bar deeper than half the specimen is none.
+            if !whole_side || deep > 0.5 * size[along] {
+                continue;
+            }
+            if from[along] < near {
+                low[along] = f64::max(low[along], to[along]);
+            } else if to[along] > size[along] - near {
+                high[along] = f64::min(high[along], from[along]);
+            } else {
+                continue;
+            }
+            area += deep * size[across];
+        }
+        gripped.push(area);
+    }
+    ([low, high], gripped)
 }
 
 /// Columns and rows that make cells near square, as many as 24×24.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Constraints {
-    /// dσ/dε above a thousandth of the largest secant stiffness everywhere.
+    /// dσ/dε everywhere above a thousandth of the largest stiffness of the gap start.
     #[default]
     Stable,
     /// Control values not negative: the published rule.
@@ -39,7 +39,8 @@ pub struct Settings {
     pub compression: Compression,
     /// How equilibria are found.
     pub equilibrium: equilibrium::Settings,
-    /// More control points must lower the residual by this share; default 1 %, as published.
+    /// More control points must lower the root mean square residual by this share; default 1 %. (Published: 1 % of its
+    /// square.)
     pub growth_gain: f64,
     /// The outer loop.
     pub outer: Options,
@@ -71,7 +72,7 @@ impl Settings {
     /// Names the setting that cannot be.
     ///
     /// # Errors
-    /// No control point, or more than 50; fewer than 2 nodes a side or more than 1000.
+    /// No control point, or more than 50; fewer than 3 nodes a side or more than 1000.
     pub fn validate(&self) -> Result<()> {
         let setting = |field, found: String, expected: &str| {
             Err(Error::Setting { field, found, expected: expected.into() })

@@ -22,6 +22,7 @@ pub(crate) fn curve_report(
         component: simulation.component(),
         samples: samples(&curve, visited, covariance),
         deviations: covariance.standard_deviations(),
+        half_bands: covariance.half_bands(),
         rank: covariance.rank,
         unseen: (0..curve.len()).filter(|&i| covariance.unseen.row(i).norm() > 1e-6).collect(),
         correlated: covariance.correlated(),

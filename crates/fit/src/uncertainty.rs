@@ -11,7 +11,8 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-/// Relative size of an eigenvalue of the scaled JᵀJ below which the data do not see its direction.
+/// Relative size of an eigenvalue of the scaled JᵀJ below which the data do not see its direction: a standard deviation a
+/// hundred thousand times that of the best seen direction is no knowledge.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Standard normal quantiles of 97.5 % and 99 %.
@@ -56,8 +57,10 @@ impl Scatter {
         let square = |i: usize| residual[i] * residual[i];
         let sum: f64 = (0..residual.len()).filter(|&i| informative[i]).map(square).sum();
         let mean_square = sum / freedom.max(1) as f64;
-        let variance =
-            known.map_or_else(|| successive_variance(residual, tracks, &informative), |noise| noise * noise);
+        let variance = match known {
+            Some(noise) => noise * noise,
+            None => successive_variance(residual, tracks, &informative).unwrap_or(mean_square),
+        };
         let exceeds = freedom > 0
             && match known {
                 Some(_) => sum > chi_square_99(freedom as f64) * variance,
@@ -88,8 +91,8 @@ impl Scatter {
     }
 }
 
-/// Variance from differences of neighbours, in which a smooth misfit cancels.
-fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informative: &[bool]) -> f64 {
+/// Variance from differences of neighbours, in which a smooth misfit cancels; `None` where nothing has a neighbour.
+fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informative: &[bool]) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for track in tracks {
         let seen: Vec<usize> = track.iter().copied().filter(|&i| informative[i]).collect();
@@ -98,7 +101,7 @@ fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informati
             count += 1;
         }
     }
-    sum / (2.0 * count.max(1) as f64)
+    (count > 0).then(|| sum / (2.0 * count as f64))
 }
 
 /// 99 % quantile of the χ² distribution (Wilson and Hilferty 1931).
@@ -161,7 +164,9 @@ impl Covariance {
         }
         let unseen =
             if unseen.is_empty() { DMatrix::zeros(parameters, 0) } else { DMatrix::from_columns(&unseen) };
-        let quantile = if scatter.known { Z_975 } else { student_975(scatter.freedom.max(1) as f64) };
+        // What was estimated from few residuals is itself uncertain.
+        let exact = scatter.known && scatter.misfit == 0.0;
+        let quantile = if exact { Z_975 } else { student_975(scatter.freedom.max(1) as f64) };
         Self { matrix, rank, unseen, quantile }
     }
 
@@ -179,6 +184,12 @@ impl Covariance {
         (0..self.matrix.ncols())
             .map(|i| (self.unseen.row(i).norm() <= 1e-6).then(|| self.matrix[(i, i)].max(0.0).sqrt()))
             .collect()
+    }
+
+    /// Half the 95 % band of each control value; `None` for one that the data do not see.
+    pub fn half_bands(&self) -> Vec<Option<f64>> {
+        let band = |deviation: Option<f64>| deviation.map(|deviation| self.quantile * deviation);
+        self.standard_deviations().into_iter().map(band).collect()
     }
 
     /// Pairs of control values whose correlation exceeds 0.95 in size.

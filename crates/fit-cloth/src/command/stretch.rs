@@ -117,6 +117,10 @@ fn fit_model(
         )
         .into());
     }
+    let unused = set.sequences.iter().filter(|sequence| stretch::component_of(sequence.kind).is_none());
+    for sequence in unused.filter(|_| speaks) {
+        writeln!(output, "{} ({}) takes no part in a fit of stretch\n", sequence.name, sequence.kind)?;
+    }
     if speaks {
         writeln!(output, "{}", text::residuals(&stages))?;
         for stage in &stages {

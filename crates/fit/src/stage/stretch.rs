@@ -53,17 +53,16 @@ pub fn fit(
     };
     // Without any simulation: the range of strain on the blended shapes, a constant stiffness, and the largest one.
     let range = blended_range(&replicas, component);
-    let free = |points| Domain::everywhere(points);
     let one = constant(1.0, negative)?;
-    let mean = gap::start(&replicas, component, &one, &Curves::default(), &free(1))[0].max(f64::MIN_POSITIVE);
-    let across = match component {
-        Component::StretchWeft => Component::StretchWarp,
-        _ => Component::StretchWeft,
-    };
-    let known = Curves::from_iter([(
-        across,
-        constant(mean, settings.model.negative_strain(across, settings.compression))?,
-    )]);
+    let mean = gap::start(&replicas, component, &one, &Curves::default(), &Domain::everywhere(1))[0];
+    if !(mean > 0.0) {
+        return Err(unfit(
+            &replicas,
+            format!("clip forces that make a stiffness of {mean:.3e} N/m"),
+            "the force that the cords exert on each clip, outward where the specimen is stretched: check its sign",
+        ));
+    }
+    let known = curve_across(component, mean, settings)?;
     let fine =
         StiffnessCurve::new(equidistant(settings.points, range), vec![mean; settings.points], negative)
             .map_err(mechanics(component))?;
@@ -81,12 +80,11 @@ pub fn fit(
         Arc::clone(&watch.meter),
     );
     if simulation.frames().next().is_none() {
-        let sequences: Vec<&str> = replicas.iter().map(|replica| &replica.name[..]).collect();
-        return Err(Error::Geometry {
-            sequence: sequences.join(", "),
-            found: "no frame with an equilibrium".into(),
-            expected: "clips that stretch the specimen".into(),
-        });
+        return Err(unfit(
+            &replicas,
+            "no frame with an equilibrium".into(),
+            "clips that stretch the specimen",
+        ));
     }
     let growth = grow(&mut simulation, settings, lowest_tangent, watch).map_err(mechanics(component))?;
     // The last trial may have been a step that was rejected.
@@ -126,20 +124,28 @@ pub fn predict(
 ) -> Result<Vec<SequenceReport>> {
     settings.validate()?;
     let replicas = replicas(set, component, settings)?;
+    let known =
+        curve_across(component, curve.stiffnesses().iter().sum::<f64>() / curve.len() as f64, settings)?;
+    let mut simulation =
+        Simulation::new(&replicas, component, curve.clone(), known, settings.equilibrium, Arc::default());
+    let forces = simulation.settle();
+    Ok(sequence_reports(&simulation, &forces))
+}
+
+/// The constant curve across the pull.
+fn curve_across(component: Component, stiffness: f64, settings: &Settings) -> Result<Curves> {
     let across = match component {
         Component::StretchWeft => Component::StretchWarp,
         _ => Component::StretchWeft,
     };
     let negative = settings.model.negative_strain(across, settings.compression);
-    let mean = curve.stiffnesses().iter().sum::<f64>() / curve.len() as f64;
-    let known = Curves::from_iter([(
-        across,
-        StiffnessCurve::constant(mean, negative).map_err(mechanics(component))?,
-    )]);
-    let mut simulation =
-        Simulation::new(&replicas, component, curve.clone(), known, settings.equilibrium, Arc::default());
-    let forces = simulation.settle();
-    Ok(sequence_reports(&simulation, &forces))
+    let curve = StiffnessCurve::constant(stiffness, negative).map_err(mechanics(component))?;
+    Ok(Curves::from_iter([(across, curve)]))
+}
+
+fn unfit(replicas: &[Replica], found: String, expected: &str) -> Error {
+    let names: Vec<&str> = replicas.iter().map(|replica| &replica.name[..]).collect();
+    Error::Geometry { sequence: names.join(", "), found, expected: expected.into() }
 }
 
 fn mechanics(component: Component) -> impl Fn(cloth_sim::error::Error) -> Error {
