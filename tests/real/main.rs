@@ -1,0 +1,4 @@
+//! Tests on reference and measured data that do not belong to the repository. They read the folder that the environment
+//! variable `FIT_CLOTH_DATA` names: `FIT_CLOTH_DATA=… cargo test -p fit-cloth-tests --test real`.
+
+mod analytic;
