@@ -119,3 +119,13 @@ pub fn data(name: &str) -> PathBuf {
     assert!(path.exists(), "{} does not exist: is FIT_CLOTH_DATA the right folder?", path.display());
     path
 }
+
+/// The fields of a simple comma-separated file of the reference data, without its header; no field is quoted with a comma.
+///
+/// # Panics
+/// If it cannot be read.
+pub fn rows(name: &str) -> Vec<Vec<String>> {
+    let path = data(name);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    text.lines().skip(1).map(|line| line.split(',').map(|field| field.trim().to_owned()).collect()).collect()
+}

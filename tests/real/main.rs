@@ -1,4 +1,7 @@
-//! Tests on real measurements. They run only when asked for:
-//! `FIT_CLOTH_DATA=<folder> cargo test -p fit-cloth-tests --test real`.
+//! Tests on reference and measured data that do not belong to the repository. They read the folder that the environment
+//! variable `FIT_CLOTH_DATA` names: `FIT_CLOTH_DATA=… cargo test -p fit-cloth-tests --test real`.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod analytic;
 mod nist;

@@ -206,6 +206,11 @@ impl Cloth {
         self.visit(&mut HessianPass { curves, x, curvature, targets, values });
     }
 
+    /// Where the entry of two unknowns stands among the Hessian's values; `None` where it is zero in every state.
+    pub fn entry(&self, first: usize, second: usize) -> Option<usize> {
+        self.pattern.position(first.max(second), first.min(second))
+    }
+
     /// ∂(gradient)/∂kᵢ for every control value of a component's curve: one column of 3 × nodes each, N per unit of
     /// stiffness.
     pub fn parameter_gradient(

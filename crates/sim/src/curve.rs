@@ -166,6 +166,7 @@ impl StiffnessCurve {
     }
 
     /// Stress and tangent at a strain.
+    #[inline(always)]
     pub fn response(&self, strain: f64) -> Response {
         if strain >= 0.0 {
             return self.positive(strain);

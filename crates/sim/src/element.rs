@@ -38,14 +38,21 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
     /// Their derivatives with respect to every node, 1/m.
     fn gradients(&self, x: &[Point<N>; K]) -> [[Point<N>; K]; S];
 
-    /// The geometric part Σ_c σ_c ∇²ε_c; blocks `[a][b]` with b ≤ a are read.
-    fn geometric(&self, x: &[Point<N>; K], stress: &[f64; S]) -> [[Block<N>; K]; K];
+    /// Strains and gradients together, for elements that share much between them.
+    #[inline(always)]
+    fn evaluate(&self, x: &[Point<N>; K]) -> ([f64; S], [[Point<N>; K]; S]) {
+        (self.strains(x), self.gradients(x))
+    }
+
+    /// Adds the geometric part Σ_c σ_c ∇²ε_c to the blocks `[a][b]` with b ≤ a.
+    fn add_geometric(&self, x: &[Point<N>; K], stress: &[f64; S], blocks: &mut [[Block<N>; K]; K]);
 
     /// The same, changed as little as is simple so that it is positive semi-definite.
-    fn geometric_clamped(&self, x: &[Point<N>; K], stress: &[f64; S]) -> [[Block<N>; K]; K];
+    fn add_clamped(&self, x: &[Point<N>; K], stress: &[f64; S], blocks: &mut [[Block<N>; K]; K]);
 }
 
 /// The nodes' coordinates, from three stacked coordinates a node.
+#[inline(always)]
 pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [Point<N>; K] {
     nodes.map(|node| Point::from_column_slice(&x[3 * node..3 * node + N]))
 }
@@ -115,7 +122,7 @@ impl Pass for GradientPass<'_> {
         for element in elements {
             let (nodes, components, area) = (element.nodes(), element.components(), element.area());
             let x = gather(nodes, self.x);
-            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            let (strains, gradients) = element.evaluate(&x);
             let mut force = [Point::<N>::zeros(); K];
             for c in 0..S {
                 let Some(curve) = self.curves.get(components[c]) else { continue };
@@ -153,35 +160,37 @@ impl Pass for HessianPass<'_> {
         part: usize,
         elements: &[E],
     ) {
-        let mut targets = self.targets[part].iter();
-        for (index, element) in elements.iter().enumerate() {
+        let targets = self.targets[part].chunks_exact(lower_entry_count(K, N));
+        for (index, (element, targets)) in elements.iter().zip(targets).enumerate() {
             let (components, area) = (element.components(), element.area());
             let x = gather(element.nodes(), self.x);
-            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
-            // The mixed strains belong to the membrane: a hinge uses its own stress.
-            let geometric_strains: [f64; S] = match self.curvature {
-                Curvature::Mixed(mixed) if part == 0 => std::array::from_fn(|c| mixed[S * index + c]),
-                _ => strains,
-            };
+            let (strains, gradients) = element.evaluate(&x);
             let (mut stress, mut tangent) = ([0.0; S], [0.0; S]);
             for c in 0..S {
-                if let Some(curve) = self.curves.get(components[c]) {
-                    tangent[c] = area * curve.response(strains[c]).tangent;
-                    stress[c] = area * curve.stress(geometric_strains[c]);
-                }
+                let Some(curve) = self.curves.get(components[c]) else { continue };
+                let response = curve.response(strains[c]);
+                tangent[c] = area * response.tangent;
+                stress[c] = area
+                    * match self.curvature {
+                        // The mixed strains belong to the membrane: a hinge uses its own stress.
+                        Curvature::Mixed(mixed) if part == 0 => curve.stress(mixed[S * index + c]),
+                        _ => response.stress,
+                    };
             }
-            let mut blocks = match self.curvature {
-                Curvature::Clamped => element.geometric_clamped(&x, &stress),
-                _ => element.geometric(&x, &stress),
-            };
+            let mut blocks = [[Block::<N>::zeros(); K]; K];
             for c in 0..S {
                 for a in 0..K {
                     let scaled = gradients[c][a] * tangent[c];
                     for b in 0..=a {
-                        blocks[a][b].ger(1.0, &scaled, &gradients[c][b], 1.0);
+                        blocks[a][b] += scaled * gradients[c][b].transpose();
                     }
                 }
             }
+            match self.curvature {
+                Curvature::Clamped => element.add_clamped(&x, &stress, &mut blocks),
+                _ => element.add_geometric(&x, &stress, &mut blocks),
+            }
+            let mut targets = targets.iter();
             for a in 0..K {
                 for b in 0..=a {
                     for j in 0..N {
@@ -195,6 +204,12 @@ impl Pass for HessianPass<'_> {
             }
         }
     }
+}
+
+/// How many of them an element has.
+fn lower_entry_count(nodes: usize, coordinates: usize) -> usize {
+    let unknowns = nodes * coordinates;
+    unknowns * (unknowns + 1) / 2
 }
 
 /// The entries of an element's Hessian that are scattered, as (node, coordinate) pairs: the order of the targets.
@@ -234,7 +249,7 @@ impl Pass for ParameterPass<'_> {
                 continue;
             }
             let x = gather(nodes, self.x);
-            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            let (strains, gradients) = element.evaluate(&x);
             for c in (0..S).filter(|&c| components[c] == self.component) {
                 curve.weights(strains[c], self.weights);
                 for (weight, column) in self.weights.iter().zip(self.columns.chunks_exact_mut(self.x.len())) {
@@ -270,7 +285,7 @@ impl Pass for PredictedStrainPass<'_> {
         for element in elements {
             let nodes = element.nodes();
             let (x, step) = (gather::<K, N>(nodes, self.x), gather::<K, N>(nodes, self.step));
-            let (strains, gradients) = (element.strains(&x), element.gradients(&x));
+            let (strains, gradients) = element.evaluate(&x);
             self.strains.extend(
                 (0..S).map(|c| strains[c] + (0..K).map(|a| gradients[c][a].dot(&step[a])).sum::<f64>()),
             );

@@ -266,7 +266,10 @@ impl Mesh {
 mod tests {
     use super::*;
 
-    fn square() -> (Vec<Vector3<f64>>, Vec<Vector2<f64>>, Vec<[usize; 3]>) {
+    type Change<'a> = &'a dyn Fn(&mut Vec<Vector3<f64>>, &mut Vec<Vector2<f64>>, &mut Vec<[usize; 3]>);
+    type Parts = (Vec<Vector3<f64>>, Vec<Vector2<f64>>, Vec<[usize; 3]>);
+
+    fn square() -> Parts {
         let material = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         (
             material.iter().map(|p: &[f64; 2]| Vector3::new(p[0], p[1], 0.0)).collect(),
@@ -293,12 +296,11 @@ mod tests {
 
     #[test]
     fn every_defect_is_named() {
-        let check =
-            |change: &dyn Fn(&mut Vec<Vector3<f64>>, &mut Vec<Vector2<f64>>, &mut Vec<[usize; 3]>)| {
-                let (mut p, mut m, mut t) = square();
-                change(&mut p, &mut m, &mut t);
-                Mesh::new(p, m, t).unwrap_err()
-            };
+        let check = |change: Change<'_>| {
+            let (mut p, mut m, mut t) = square();
+            change(&mut p, &mut m, &mut t);
+            Mesh::new(p, m, t).unwrap_err()
+        };
         assert_eq!(
             check(&|p, _, _| p[2].x = f64::NAN),
             Error::NotFinite { what: "rest position", vertex: 2 }

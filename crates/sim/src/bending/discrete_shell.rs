@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::material::Component;
 use crate::membrane::{Direction, direction_of};
 use crate::mesh::Mesh;
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 /// Two triangles sharing an edge.
@@ -46,15 +46,17 @@ struct Geometry {
 }
 
 impl Geometry {
+    #[inline(always)]
     fn new(x: &[Vector3<f64>; 4]) -> Self {
         let edge = x[1] - x[0];
         let wings = [x[2] - x[0], x[3] - x[0]];
+        let squared = edge.norm_squared();
         Self {
             edge,
-            length: edge.norm(),
+            length: squared.sqrt(),
             normals: [edge.cross(&wings[0]), wings[1].cross(&edge)],
             wings,
-            feet: wings.map(|wing| wing.dot(&edge) / edge.norm_squared()),
+            feet: wings.map(|wing| wing.dot(&edge) / squared),
         }
     }
 
@@ -64,56 +66,49 @@ impl Geometry {
     }
 
     /// ∂θ/∂x₂ = −|e| n₁/|n₁|², ∂θ/∂x₃ = −|e| n₂/|n₂|²; the edge's ends take what balances force and torque.
+    #[inline(always)]
     fn gradient(&self) -> [Vector3<f64>; 4] {
         let [g2, g3] = self.normals.map(|n| n * (-self.length / n.norm_squared()));
         let [t2, t3] = self.feet;
         [-(g2 * (1.0 - t2) + g3 * (1.0 - t3)), -(g2 * t2 + g3 * t3), g2, g3]
     }
 
-    /// ∇²θ by the product rule on [`Geometry::gradient`].
-    fn hessian(&self) -> [[Matrix3<f64>; 4]; 4] {
-        let g = self.gradient();
-        let direction = (self.edge / self.length).transpose();
-        // Derivatives of |e| with respect to x₀…x₃.
-        let d_length = [-direction, direction, RowVector3::zeros(), RowVector3::zeros()];
-        let mut rows = [[Matrix3::zeros(); 4]; 2];
-        let mut d_feet = [[RowVector3::zeros(); 4]; 2];
+    /// Adds a multiple of ∇²θ to the lower blocks.
+    ///
+    /// Each side has its unit normal n̂, its height h, the unit vector m̂ from the edge to the wing, and the edge ê of
+    /// length l. A node a moves the wing off the edge by its share c_a, and turns the edge by d_a/l:
+    ///
+    /// ```text
+    ///        x₀        x₁     wing
+    /// c   −(1 − t)    −t       1          ∂θ/∂x_a = −c_a n̂/h, summed over the sides
+    /// d     −1         1       0
+    ///
+    /// ∂²θ/∂x_a∂x_b = Σ  (c_a c_b/h² + d_a d_b/2l²) (m̂n̂ᵀ + n̂m̂ᵀ) + (c_a d_b ên̂ᵀ + d_a c_b n̂êᵀ)/(h l)
+    /// ```
+    #[inline(always)]
+    fn add_hessian(&self, factor: f64, blocks: &mut [[Matrix3<f64>; 4]; 4]) {
+        let edge = self.edge / self.length;
         for side in 0..2 {
-            let (normal, wing, wing_node) = (self.normals[side], self.wings[side], 2 + side);
-            // n₁ = e × b, n₂ = b × e: the second is minus the first's form.
-            let sign = if side == 0 { 1.0 } else { -1.0 };
-            let by_edge = -wing.cross_matrix() * sign;
-            let by_wing = self.edge.cross_matrix() * sign;
-            let mut d_normal = [Matrix3::zeros(); 4];
-            d_normal[0] = -(by_edge + by_wing);
-            d_normal[1] = by_edge;
-            d_normal[wing_node] = by_wing;
-            let squared = normal.norm_squared();
-            let unit = normal / squared;
-            let shrink = (Matrix3::identity() - unit * normal.transpose() * 2.0) * (self.length / squared);
-            for node in 0..4 {
-                rows[side][node] = -(unit * d_length[node] + shrink * d_normal[node]);
-            }
-            // t = b·e/e·e
+            let size = self.normals[side].norm();
+            let (normal, height) = (self.normals[side] / size, size / self.length);
+            let across = (self.wings[side] - self.edge * self.feet[side]) / height;
+            let scaled = (normal * factor).transpose();
+            let tilt = across * scaled;
+            let tilt = tilt + tilt.transpose();
+            let turn = edge * scaled;
+            let turned = turn.transpose();
+            // Lengths are divided into the shares: c/h and d/l.
             let foot = self.feet[side];
-            let squared = self.length * self.length;
-            let by_wing = self.edge.transpose() / squared;
-            let by_edge = (wing - self.edge * (2.0 * foot)).transpose() / squared;
-            d_feet[side][0] = -(by_edge + by_wing);
-            d_feet[side][1] = by_edge;
-            d_feet[side][wing_node] = by_wing;
+            let (wing, turns) = (1.0 / height, 1.0 / self.length);
+            let shares =
+                [(0, [-(1.0 - foot) * wing, -turns]), (1, [-foot * wing, turns]), (2 + side, [wing, 0.0])];
+            for (row, (a, [c_a, d_a])) in shares.into_iter().enumerate() {
+                for (b, [c_b, d_b]) in shares.into_iter().take(row + 1) {
+                    blocks[a][b] +=
+                        tilt * (c_a * c_b + 0.5 * d_a * d_b) + turn * (c_a * d_b) + turned * (d_a * c_b);
+                }
+            }
         }
-        let [t2, t3] = self.feet;
-        let end = |node: usize, weights: [f64; 2], sign: f64| {
-            let by_feet = (g[2] * d_feet[0][node] + g[3] * d_feet[1][node]) * sign;
-            by_feet - rows[0][node] * weights[0] - rows[1][node] * weights[1]
-        };
-        [
-            std::array::from_fn(|node| end(node, [1.0 - t2, 1.0 - t3], 1.0)),
-            std::array::from_fn(|node| end(node, [t2, t3], -1.0)),
-            rows[0],
-            rows[1],
-        ]
     }
 }
 
@@ -151,6 +146,19 @@ impl Hinge {
         }
         Ok(hinges)
     }
+
+    /// (θ − θ₀)/h₀ with the shorter of the two ways round.
+    fn strain(&self, geometry: &Geometry) -> f64 {
+        let turn = geometry.angle() - self.rest_angle;
+        let wrapped = if turn > PI {
+            turn - 2.0 * PI
+        } else if turn <= -PI {
+            turn + 2.0 * PI
+        } else {
+            turn
+        };
+        wrapped / self.width
+    }
 }
 
 impl Element<4, 3, 1> for Hinge {
@@ -167,28 +175,24 @@ impl Element<4, 3, 1> for Hinge {
     }
 
     fn strains(&self, x: &[Point<3>; 4]) -> [f64; 1] {
-        let turn = Geometry::new(x).angle() - self.rest_angle;
-        let wrapped = if turn > PI {
-            turn - 2.0 * PI
-        } else if turn <= -PI {
-            turn + 2.0 * PI
-        } else {
-            turn
-        };
-        [wrapped / self.width]
+        [self.strain(&Geometry::new(x))]
     }
 
     fn gradients(&self, x: &[Point<3>; 4]) -> [[Point<3>; 4]; 1] {
         [Geometry::new(x).gradient().map(|g| g / self.width)]
     }
 
-    fn geometric(&self, x: &[Point<3>; 4], &[stress]: &[f64; 1]) -> [[Block<3>; 4]; 4] {
-        let factor = stress / self.width;
-        Geometry::new(x).hessian().map(|row| row.map(|block| block * factor))
+    #[inline(always)]
+    fn evaluate(&self, x: &[Point<3>; 4]) -> ([f64; 1], [[Point<3>; 4]; 1]) {
+        let geometry = Geometry::new(x);
+        ([self.strain(&geometry)], [geometry.gradient().map(|g| g / self.width)])
+    }
+
+    #[inline(always)]
+    fn add_geometric(&self, x: &[Point<3>; 4], &[stress]: &[f64; 1], blocks: &mut [[Block<3>; 4]; 4]) {
+        Geometry::new(x).add_hessian(stress / self.width, blocks);
     }
 
     /// Without the geometric part, which is never semi-definite, the hinge's matrix is.
-    fn geometric_clamped(&self, _x: &[Point<3>; 4], _stress: &[f64; 1]) -> [[Block<3>; 4]; 4] {
-        [[Block::zeros(); 4]; 4]
-    }
+    fn add_clamped(&self, _x: &[Point<3>; 4], _stress: &[f64; 1], _blocks: &mut [[Block<3>; 4]; 4]) {}
 }

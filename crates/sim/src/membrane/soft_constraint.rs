@@ -1,7 +1,7 @@
 //! Soft-constraint triangles: change of length instead of Green strain.
 
 use super::Triangle;
-use super::stvk::{TRIANGLE_COMPONENTS, scalar_blocks};
+use super::stvk::{TRIANGLE_COMPONENTS, add_scalar_blocks};
 use crate::element::{Block, Element, Point};
 use crate::material::Component;
 
@@ -24,13 +24,14 @@ fn length<const N: usize>(w: &Point<N>) -> f64 {
 }
 
 impl SoftTriangle {
-    fn blocks<const N: usize>(
+    fn add_blocks<const N: usize>(
         &self,
         x: &[Point<N>; 3],
         stretch: [f64; 2],
         shear: [f64; 3],
-    ) -> [[Block<N>; 3]; 3] {
-        let mut blocks = scalar_blocks(&self.0, &shear);
+        blocks: &mut [[Block<N>; 3]; 3],
+    ) {
+        add_scalar_blocks(&self.0, &shear, blocks);
         let weights = [&self.0.weft, &self.0.warp];
         for ((w, stress), r) in self.0.deformation(x).iter().zip(stretch).zip(weights) {
             let length = length(w);
@@ -42,7 +43,6 @@ impl SoftTriangle {
                 }
             }
         }
-        blocks
     }
 }
 
@@ -74,13 +74,18 @@ impl<const N: usize> Element<3, N, 3> for SoftTriangle {
         ]
     }
 
-    fn geometric(&self, x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3]) -> [[Block<N>; 3]; 3] {
-        self.blocks(x, [s_u, s_v], [0.0, 0.0, s_uv])
+    fn add_geometric(
+        &self,
+        x: &[Point<N>; 3],
+        &[s_u, s_v, s_uv]: &[f64; 3],
+        blocks: &mut [[Block<N>; 3]; 3],
+    ) {
+        self.add_blocks(x, [s_u, s_v], [0.0, 0.0, s_uv], blocks);
     }
 
     /// Compression is dropped; of the shear, whose eigenvalues are ±σ_uv, the positive one stays.
-    fn geometric_clamped(&self, x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3]) -> [[Block<N>; 3]; 3] {
+    fn add_clamped(&self, x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3], blocks: &mut [[Block<N>; 3]; 3]) {
         let half = 0.5 * s_uv.abs();
-        self.blocks(x, [s_u.max(0.0), s_v.max(0.0)], [half, half, 0.5 * s_uv])
+        self.add_blocks(x, [s_u.max(0.0), s_v.max(0.0)], [half, half, 0.5 * s_uv], blocks);
     }
 }

@@ -58,15 +58,17 @@ impl<const N: usize> Element<2, N, 1> for Spring {
         [[-normal, normal]]
     }
 
-    fn geometric(&self, x: &[Point<N>; 2], &[stress]: &[f64; 1]) -> [[Block<N>; 2]; 2] {
+    fn add_geometric(&self, x: &[Point<N>; 2], &[stress]: &[f64; 1], blocks: &mut [[Block<N>; 2]; 2]) {
         let (normal, length) = self.length(x);
         let across =
             (Block::identity() - normal * normal.transpose()) * (stress / (length * self.rest_length));
-        [[across, -across], [-across, across]]
+        blocks[0][0] += across;
+        blocks[1][0] -= across;
+        blocks[1][1] += across;
     }
 
-    fn geometric_clamped(&self, x: &[Point<N>; 2], &[stress]: &[f64; 1]) -> [[Block<N>; 2]; 2] {
-        self.geometric(x, &[stress.max(0.0)])
+    fn add_clamped(&self, x: &[Point<N>; 2], &[stress]: &[f64; 1], blocks: &mut [[Block<N>; 2]; 2]) {
+        self.add_geometric(x, &[stress.max(0.0)], blocks);
     }
 }
 

@@ -31,11 +31,13 @@ impl<const N: usize> Element<3, N, 3> for StvkTriangle {
         self.0.area
     }
 
+    #[inline(always)]
     fn strains(&self, x: &[Point<N>; 3]) -> [f64; 3] {
         let [w_u, w_v] = self.0.deformation(x);
         [0.5 * (w_u.norm_squared() - 1.0), 0.5 * (w_v.norm_squared() - 1.0), w_u.dot(&w_v)]
     }
 
+    #[inline(always)]
     fn gradients(&self, x: &[Point<N>; 3]) -> [[Point<N>; 3]; 3] {
         let [w_u, w_v] = self.0.deformation(x);
         [
@@ -45,20 +47,22 @@ impl<const N: usize> Element<3, N, 3> for StvkTriangle {
         ]
     }
 
-    fn geometric(&self, _x: &[Point<N>; 3], stress: &[f64; 3]) -> [[Block<N>; 3]; 3] {
-        scalar_blocks(&self.0, stress)
+    #[inline(always)]
+    fn add_geometric(&self, _x: &[Point<N>; 3], stress: &[f64; 3], blocks: &mut [[Block<N>; 3]; 3]) {
+        add_scalar_blocks(&self.0, stress, blocks);
     }
 
     /// The stress tensor [σ_u σ_uv; σ_uv σ_v] loses its negative eigenvalues.
-    fn geometric_clamped(&self, _x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3]) -> [[Block<N>; 3]; 3] {
+    fn add_clamped(&self, _x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3], blocks: &mut [[Block<N>; 3]; 3]) {
         let (mean, half) = (0.5 * (s_u + s_v), 0.5 * (s_u - s_v));
         let radius = half.hypot(s_uv);
         let [low, high] = [mean - radius, mean + radius].map(|eigenvalue| eigenvalue.max(0.0));
         if radius == 0.0 {
-            return scalar_blocks(&self.0, &[high, high, 0.0]);
+            return add_scalar_blocks(&self.0, &[high, high, 0.0], blocks);
         }
         let (sum, difference) = (0.5 * (high + low), 0.5 * (high - low) / radius);
-        scalar_blocks(&self.0, &[sum + difference * half, sum - difference * half, difference * s_uv])
+        let clamped = [sum + difference * half, sum - difference * half, difference * s_uv];
+        add_scalar_blocks(&self.0, &clamped, blocks);
     }
 }
 
@@ -66,19 +70,20 @@ impl<const N: usize> Element<3, N, 3> for StvkTriangle {
 pub(super) const TRIANGLE_COMPONENTS: [Component; 3] =
     [Component::StretchWeft, Component::StretchWarp, Component::Shear];
 
-/// The blocks (rᵀ S r) I of a stress tensor S.
-pub(super) fn scalar_blocks<const N: usize>(
+/// Adds the blocks (rᵀ S r) I of a stress tensor S.
+#[inline(always)]
+pub(super) fn add_scalar_blocks<const N: usize>(
     triangle: &Triangle,
     &[s_u, s_v, s_uv]: &[f64; 3],
-) -> [[Block<N>; 3]; 3] {
+    blocks: &mut [[Block<N>; 3]; 3],
+) {
     let Triangle { weft, warp, .. } = triangle;
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| {
-            Block::from_diagonal_element(
-                s_u * weft[a] * weft[b]
-                    + s_v * warp[a] * warp[b]
-                    + s_uv * (weft[a] * warp[b] + warp[a] * weft[b]),
-            )
-        })
-    })
+    for a in 0..3 {
+        for b in 0..=a {
+            let scalar = s_u * weft[a] * weft[b]
+                + s_v * warp[a] * warp[b]
+                + s_uv * (weft[a] * warp[b] + warp[a] * weft[b]);
+            (0..N).for_each(|i| blocks[a][b][(i, i)] += scalar);
+        }
+    }
 }

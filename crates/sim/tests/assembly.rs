@@ -1,0 +1,168 @@
+//! The assembled cloth against finite differences, and as a whole under rigid motion.
+//!
+//! ```text
+//!  ▌▔▔▔▔▔▐   goal    gradient = dE/dx, Hessian and clip border = d(gradient)/dx, parameter gradient = d(gradient)/dk
+//!  ▌ 4×5 ▐   states  a stretched, sheared and crumpled grid between two clips; every model; in the plane and in space
+//!  ▌▁▁▁▁▁▐   passes  1e-6 relative; forces turn with a rigid motion to 1e-9 (a kilometre away: 1e-6)
+//! ```
+
+use cloth_sim::cloth::{Cloth, ForceScale};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::element::Curvature;
+use cloth_sim::finite_difference::derivative_error;
+use cloth_sim::material::{Component, Compression, Curves, Model};
+use cloth_sim::mesh::{Diagonals, Grid};
+use cloth_sim::samples::{GRAVITY, Sample};
+use nalgebra::{DMatrix, Rotation3, Vector3};
+
+/// Every component with a nonlinear curve (planar: the membrane's only).
+fn curves(model: Model, planar: bool) -> Curves {
+    let component = |component: Component| {
+        let scale = if component.is_bending() { 1e-5 } else { 200.0 };
+        let end = if component.is_bending() { 200.0 } else { 0.2 };
+        let negative = model.negative_strain(component, Compression::ZeroStrain);
+        let stiffnesses = [1.0, 1.7, 2.1].map(|k| k * scale).to_vec();
+        (
+            component,
+            StiffnessCurve::new(vec![0.0, 0.4 * end, end], stiffnesses, negative).expect("a proper curve"),
+        )
+    };
+    Component::ALL.into_iter().filter(|c| !(planar && c.is_bending())).map(component).collect()
+}
+
+fn crumpled(model: Model, planar: bool) -> Sample {
+    let grid = Grid { columns: 4, rows: 5, width: 0.03, height: 0.04, diagonals: Diagonals::Alternating };
+    let mut sample = Sample::at_rest(grid.mesh().expect("a proper grid"), model, curves(model, planar));
+    sample.planar = planar;
+    sample.gravity = if planar { Vector3::new(0.0, -GRAVITY, 0.0) } else { Vector3::new(1.0, 2.0, -GRAVITY) };
+    sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.029).then_some(1) });
+    sample.place(|p| Vector3::new(1.04 * p.x + 0.1 * p.y, 1.02 * p.y, p.z));
+    sample.perturb(1.5e-3);
+    sample
+}
+
+fn cases() -> impl Iterator<Item = (String, Sample)> {
+    Model::ALL.into_iter().flat_map(|model| {
+        [true, false].map(|planar| (format!("{model}, planar {planar}"), crumpled(model, planar)))
+    })
+}
+
+/// The whole state from the unknowns alone.
+fn state(cloth: &Cloth, start: &[f64], unknowns: &[f64]) -> Vec<f64> {
+    let mut x = start.to_vec();
+    cloth.unknown_coordinates().iter().zip(unknowns).for_each(|(&coordinate, &value)| x[coordinate] = value);
+    x
+}
+
+fn gradient(cloth: &Cloth, curves: &Curves, x: &[f64]) -> (f64, Vec<f64>, ForceScale) {
+    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.nodes()));
+    let energy = cloth.gradient(curves, x, &mut gradient, &mut scale);
+    (energy, gradient, scale)
+}
+
+fn dense(cloth: &Cloth, values: &[f64]) -> DMatrix<f64> {
+    let size = cloth.unknowns();
+    DMatrix::from_fn(size, size, |i, j| cloth.entry(i, j).map_or(0.0, |place| values[place]))
+}
+
+#[test]
+fn the_gradient_is_the_derivative_of_the_energy() {
+    for (name, sample) in cases() {
+        let cloth = sample.cloth().unwrap();
+        let (energy, gradient, _) = gradient(&cloth, &sample.curves, &sample.start);
+        assert!((energy - cloth.energy(&sample.curves, &sample.start)).abs() <= 1e-14 * energy.abs());
+        let value = |x: &[f64]| vec![cloth.energy(&sample.curves, x)];
+        // Held nodes included; a planar problem has no forces across its plane.
+        let error = derivative_error(value, &gradient, &sample.start, 1e-6, 0.0);
+        assert!(error < 1e-7, "{name}: {error:e}");
+    }
+}
+
+#[test]
+fn the_hessian_and_the_clip_border_are_derivatives_of_the_gradient() {
+    for (name, sample) in cases() {
+        let cloth = sample.cloth().unwrap();
+        let at: Vec<f64> = cloth.unknown_coordinates().iter().map(|&c| sample.start[c]).collect();
+        let mut values = Vec::new();
+        cloth.hessian(&sample.curves, &sample.start, Curvature::Full, &mut values);
+        let border = &values[cloth.entries()..values.len() - 1];
+        assert_eq!(border.len(), 3 * 2 * cloth.unknowns());
+        let mut rows: Vec<f64> = dense(&cloth, &values).iter().copied().collect();
+        rows.extend(border);
+        let value = |unknowns: &[f64]| {
+            let (_, gradient, _) = gradient(&cloth, &sample.curves, &state(&cloth, &sample.start, unknowns));
+            let free = cloth.unknown_coordinates().iter().map(|&c| gradient[c]);
+            let forces = cloth.clip_forces(&gradient);
+            free.chain(forces.iter().flat_map(|f| [f.x, f.y, f.z])).collect::<Vec<_>>()
+        };
+        let error = derivative_error(value, &rows, &at, 1e-6, 0.0);
+        assert!(error < 1e-6, "{name}: {error:e}");
+    }
+}
+
+#[test]
+fn the_clamped_hessian_has_no_negative_eigenvalue() {
+    for (name, sample) in cases() {
+        let cloth = sample.cloth().unwrap();
+        let mut x = sample.start.clone();
+        // Far into compression, where the true Hessian is indefinite.
+        x.iter_mut().step_by(3).for_each(|x| *x *= 0.3);
+        let lowest = |curvature| {
+            let mut values = Vec::new();
+            cloth.hessian(&sample.curves, &x, curvature, &mut values);
+            let eigenvalues = dense(&cloth, &values).symmetric_eigenvalues();
+            eigenvalues.min() / eigenvalues.max()
+        };
+        assert!(lowest(Curvature::Full) < -1e-3, "{name}");
+        assert!(lowest(Curvature::Clamped) > -1e-12, "{name}");
+    }
+}
+
+#[test]
+fn the_parameter_gradient_is_the_derivative_in_every_control_value() {
+    for (name, sample) in cases() {
+        let cloth = sample.cloth().unwrap();
+        let mut columns = Vec::new();
+        for component in sample.curves.components() {
+            cloth.parameter_gradient(&sample.curves, component, &sample.start, &mut columns);
+            let curve = sample.curves.get(component).unwrap();
+            let value = |k: &[f64]| {
+                // Alone, so that its forces do not drown in those of the others.
+                let curves = [(component, curve.with_stiffnesses(k.to_vec()).unwrap())].into_iter().collect();
+                gradient(&cloth, &curves, &sample.start).1
+            };
+            let rows = DMatrix::from_column_slice(sample.start.len(), curve.len(), &columns).transpose();
+            let k = curve.stiffnesses();
+            let error = derivative_error(value, rows.as_slice(), k, 0.1 * k[0], 0.0);
+            assert!(error < 1e-9, "{name}, {component}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn a_rigid_motion_turns_the_forces_and_leaves_the_energy() {
+    let rotation = Rotation3::new(Vector3::new(2.0, -1.1, 0.4));
+    for model in Model::ALL {
+        let mut sample = crumpled(model, false);
+        sample.gravity = Vector3::zeros();
+        let cloth = sample.cloth().unwrap();
+        let (energy, before, scale) = gradient(&cloth, &sample.curves, &sample.start);
+        let largest = scale.magnitude.iter().fold(0.0, |a: f64, &b| a.max(b));
+        for (shift, allowed) in
+            [(Vector3::new(0.5, -0.3, 0.2), 1e-9), (Vector3::new(1000.0, -600.0, 300.0), 1e-6)]
+        {
+            let mut moved = sample.clone();
+            moved.place(|p| rotation * p + shift);
+            let (moved_energy, after, _) = gradient(&cloth, &sample.curves, &moved.start);
+            assert!((moved_energy - energy).abs() <= allowed * energy, "{model}");
+            let mut total = Vector3::zeros();
+            for (before, after) in before.chunks(3).zip(after.chunks(3)) {
+                let (before, after) = (Vector3::from_column_slice(before), Vector3::from_column_slice(after));
+                let change = (rotation * before - after).norm() / largest;
+                assert!(change <= allowed, "{model}: {change:e}");
+                total += after;
+            }
+            assert!(total.norm() <= 1e-11 * largest, "{model}: {total}");
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! Equilibria: ordinary ones, extreme ones, and those that do not exist.
+//!
+//! ```text
+//!  ▐▔▔╲    hanging, jutting out, compressed,    goal    converged, or a status that says what is wrong; no panic
+//!      ╲   collapsed, sheared, unheld sheets    passes  as each test says; the numbers are those of the cases
+//! ```
+
+use cloth_sim::equilibrium::{Equilibrium, Method, Settings, Solver, Status, Tolerance};
+use cloth_sim::error::Error;
+use cloth_sim::material::{Component, Model};
+use cloth_sim::membrane::Membrane;
+use cloth_sim::mesh::{Diagonals, Mesh};
+use cloth_sim::samples::{self, SIDE, Sample};
+use nalgebra::{Matrix3x2, Vector3};
+
+fn solve(sample: &Sample, settings: &Settings) -> (Equilibrium, Vec<f64>) {
+    let cloth = sample.cloth().expect("the sample is valid");
+    let mut x = sample.start.clone();
+    let found = Solver::new(&cloth).solve(&sample.curves, &mut x, settings);
+    (found, x)
+}
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
+}
+
+#[test]
+fn without_a_load_there_is_nothing_to_iterate() {
+    for model in Model::ALL {
+        let mut sample = samples::cantilever(model, 6, 500.0).unwrap();
+        sample.gravity = Vector3::zeros();
+        let (found, x) = solve(&sample, &Settings::default());
+        assert_eq!((found.iterations, x), (0, sample.start), "{model}: {found:?}");
+        // Ring-2 springs have no stiffness against bending where the cloth is flat.
+        let expected = if model == Model::Springs { Status::Unstable } else { Status::Converged };
+        assert_eq!(found.status, expected, "{model}");
+    }
+}
+
+#[test]
+fn a_clip_carries_the_weight() {
+    for model in Model::ALL {
+        for factor in [1.0, 1e4] {
+            let mut sample = samples::hanging_sheet(model, 9).unwrap();
+            sample.gravity *= factor;
+            let cloth = sample.cloth().unwrap();
+            let mut solver = Solver::new(&cloth);
+            let mut x = sample.start.clone();
+            let found = solver.solve(&sample.curves, &mut x, &Settings::default());
+            assert!(found.converged(), "{model}: {found:?}");
+            let force = solver.clip_forces()[0] + sample.weight();
+            assert!(force.norm() < 1e-5 * sample.weight().norm(), "{model}: {force}");
+        }
+    }
+}
+
+#[test]
+fn a_flat_sheet_in_compression_is_unstable_and_buckles_when_touched() {
+    for model in [Model::Stvk, Model::SoftConstraint] {
+        let curves = samples::fabric(model, [300.0, 30.0, 1e-6]).unwrap();
+        let mut sample = Sample::at_rest(samples::square(9, Diagonals::Alternating).unwrap(), model, curves);
+        sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.999 * SIDE).then_some(1) });
+        sample.place(|p| Vector3::new(0.97 * p.x, p.y, p.z));
+        let (flat, _) = solve(&sample, &Settings::default());
+        assert_eq!((flat.status, flat.iterations), (Status::Unstable, 0), "{model}: {flat:?}");
+        sample.perturb(1e-5);
+        let (buckled, x) = solve(&sample, &Settings::default());
+        assert!(buckled.converged() && buckled.energy < 0.2 * flat.energy, "{model}: {buckled:?}");
+        assert!(x.iter().skip(2).step_by(3).any(|z| z.abs() > 0.05 * SIDE));
+    }
+}
+
+/// Compressed along weft to a tenth, all around, in the plane. Shear and warp are stiff enough that
+/// the yarns do not buckle.
+#[test]
+fn a_collapsed_sheet_converges_without_inversion() {
+    for model in Model::ALL {
+        let mut sample = samples::patch(model, Matrix3x2::new(0.1, 0.0, 0.0, 1.0, 0.0, 0.0)).unwrap();
+        let weft = Component::StretchWeft;
+        let warp = Component::StretchWarp;
+        let stiffnesses = [(weft, 10.0), (warp, 1e4), (Component::Shear, 1000.0)];
+        // Diagonal springs would buckle themselves.
+        let count = if model == Model::Springs { 2 } else { 3 };
+        sample.curves = samples::linear_curves(model, &stiffnesses[..count]).unwrap();
+        sample.planar = true;
+        let exact = sample.start.clone();
+        sample.perturb(1e-5);
+        let (found, x) = solve(&sample, &Settings::default());
+        assert!(found.converged(), "{model}: {found:?}");
+        assert!(difference(&x, &exact) < 1e-6, "{model}: {:e}", difference(&x, &exact));
+        for triangle in &sample.mesh.triangles {
+            let [a, b, c] = triangle.map(|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3]));
+            assert!((b - a).cross(&(c - a)).z > 0.0, "{model}: {triangle:?} is inverted");
+        }
+    }
+}
+
+#[test]
+fn heavy_cantilevers_converge() {
+    for model in Model::ALL {
+        let mut sample = samples::cantilever(model, 9, 500.0).unwrap();
+        sample.gravity *= 1e4;
+        let (found, x) = solve(&sample, &Settings::default());
+        assert!(found.converged() && x.iter().all(|x| x.is_finite()), "{model}: {found:?}");
+    }
+}
+
+#[test]
+fn both_methods_find_the_same_equilibrium() {
+    let tolerance = Tolerance::Relative(1e-9);
+    let newton = Settings { tolerance, ..Settings::default() };
+    let published = Settings { method: Method::LevenbergMarquardt, max_iterations: 500, ..newton };
+    for model in [Model::Stvk, Model::SoftConstraint] {
+        for sample in [samples::cantilever(model, 9, 500.0), samples::hanging_sheet(model, 9)] {
+            let sample = sample.unwrap();
+            let ([first, second], [x, y]) = {
+                let ((first, x), (second, y)) = (solve(&sample, &newton), solve(&sample, &published));
+                ([first, second], [x, y])
+            };
+            assert!(first.converged() && second.converged(), "{model}: {first:?} {second:?}");
+            assert!(difference(&x, &y) < 1e-7 * SIDE, "{model}: {:e}", difference(&x, &y));
+            println!("{model}: {} and {} factorisations", first.factorisations, second.factorisations);
+        }
+    }
+}
+
+#[test]
+fn what_nothing_holds_is_named() {
+    let mut sample = samples::cantilever(Model::Stvk, 4, 500.0).unwrap();
+    sample.held.clear();
+    let error = sample.cloth().unwrap_err();
+    assert_eq!(error, Error::Unpinned { vertex: 0, vertices: 16, free: 6 });
+    assert!(error.to_string().contains("6 rigid motions free"), "{error}");
+
+    let one = samples::square(4, Diagonals::Forward).unwrap();
+    let apart = Vector3::x() * (2.0 * SIDE);
+    let positions = one.positions.iter().copied().chain(one.positions.iter().map(|p| p + apart)).collect();
+    let material = one.material.iter().chain(&one.material).copied().collect();
+    let triangles = one.triangles.iter().copied().chain(one.triangles.iter().map(|t| t.map(|v| v + 16)));
+    let mesh = Mesh::new(positions, material, triangles.collect()).unwrap();
+    let mut sample =
+        Sample::at_rest(mesh, Model::Stvk, samples::fabric(Model::Stvk, [500.0, 50.0, 1e-5]).unwrap());
+    sample.hold(|p| (p.x < 0.5 * SIDE).then_some(0));
+    assert_eq!(sample.cloth().unwrap_err(), Error::Unpinned { vertex: 16, vertices: 16, free: 6 });
+}
+
+#[test]
+fn an_iteration_cap_is_a_status_and_the_best_state_stays() {
+    let sample = samples::cantilever(Model::Stvk, 9, 500.0).unwrap();
+    let before = sample.cloth().unwrap().energy(&sample.curves, &sample.start);
+    for method in [Method::MixedNewton, Method::LevenbergMarquardt] {
+        for max_iterations in [0, 1, 3] {
+            let (found, x) = solve(&sample, &Settings { method, max_iterations, ..Settings::default() });
+            assert_eq!(
+                (found.status, found.iterations),
+                (Status::IterationLimit, max_iterations),
+                "{found:?}"
+            );
+            assert!(x.iter().all(|x| x.is_finite()) && found.imbalance.is_finite());
+            let energy = sample.cloth().unwrap().energy(&sample.curves, &x);
+            assert!((energy - found.energy).abs() <= 1e-12 * energy.abs());
+            assert!(max_iterations > 0 || energy == before);
+        }
+    }
+}
+
+#[test]
+fn what_is_not_finite_is_a_status() {
+    let sample = samples::cantilever(Model::Stvk, 6, 500.0).unwrap();
+    let last = sample.start.len() - 1;
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut sample = sample.clone();
+        sample.start[last] = bad;
+        assert_eq!(solve(&sample, &Settings::default()).0.status, Status::NotFinite);
+    }
+    // A triangle collapsed onto a hinge's edge: a finite energy, and forces that are not.
+    let mut sample = sample.clone();
+    let [a, b, _] = sample.mesh.triangles[sample.mesh.triangles.len() - 1];
+    let edge: Vec<f64> = (0..3).map(|i| 0.5 * (sample.start[3 * a + i] + sample.start[3 * b + i])).collect();
+    let [_, _, c] = sample.mesh.triangles[sample.mesh.triangles.len() - 1];
+    sample.start[3 * c..3 * c + 3].copy_from_slice(&edge);
+    let (found, x) = solve(&sample, &Settings::default());
+    assert_ne!(found.status, Status::Converged, "{found:?}");
+    assert!(x.iter().all(|x| x.is_finite()));
+}
+
+#[test]
+fn without_stiffness_nothing_panics() {
+    for model in Model::ALL {
+        let mut sample = samples::cantilever(model, 6, 500.0).unwrap();
+        sample.curves = samples::fabric(model, [0.0; 3]).unwrap();
+        let (falling, x) = solve(&sample, &Settings::default());
+        assert!(!falling.converged() && x.iter().all(|x| x.is_finite()), "{model}: {falling:?}");
+        sample.gravity = Vector3::zeros();
+        let (resting, _) = solve(&sample, &Settings::default());
+        assert_eq!((resting.status, resting.iterations), (Status::Unstable, 0), "{model}: {resting:?}");
+    }
+}
+
+#[test]
+fn a_stretch_problem_has_two_unknowns_a_node_and_nothing_of_bending() {
+    for model in Model::ALL {
+        let (mut sample, _) = samples::strip(model, Diagonals::Alternating, 300.0, 1.05).unwrap();
+        let stretch = sample.cloth().unwrap();
+        assert_eq!(stretch.unknowns(), 2 * (stretch.nodes() - sample.held.len()));
+        assert!(stretch.bending().is_none());
+        if let Membrane::Springs(springs) = stretch.membrane() {
+            assert!(springs.iter().all(|spring| spring.component != Component::Shear));
+            // 6 rows of 8 and 9 columns of 5.
+            assert_eq!(springs.len(), 6 * 8 + 9 * 5);
+        }
+        // Nodes coupled by springs along the sides of the cells, or by triangles: never across two triangles.
+        let per_node = stretch.entries() as f64 / (stretch.unknowns() as f64);
+        assert!(per_node < if model == Model::Springs { 6.0 } else { 8.0 }, "{model}: {per_node}");
+        sample.planar = false;
+        sample.curves = samples::fabric(model, [300.0, 30.0, 1e-6]).unwrap();
+        let all = sample.cloth().unwrap();
+        assert_eq!(all.unknowns(), 3 * (all.nodes() - sample.held.len()));
+        assert!(all.entries() > 2 * stretch.entries());
+        sample.planar = true;
+        assert!(matches!(sample.cloth(), Err(Error::InvalidValue { field: "planar", .. })));
+    }
+}
