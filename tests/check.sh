@@ -7,6 +7,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cargo test --workspace
 cargo fmt --all -- --check
 cargo clippy --workspace --all-targets -- -D warnings
+# The target on real measurements is left out of plain test runs, and so of --all-targets.
+cargo clippy -p fit-cloth-tests --test real -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 if [ "${1:-}" = "--full" ]; then
     cargo test --workspace -- --ignored --nocapture

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloth_fit::error::Error;
 use cloth_fit::stage::{Constraints, Settings};
-use cloth_sim::material::Model;
+use cloth_sim::material::{Compression, Model};
 use std::path::PathBuf;
 
 /// Fits stress-strain curves of cloth to measurements and writes them for simulators.
@@ -24,6 +24,7 @@ pub struct Options {
 
 /// What to do.
 #[derive(Debug, Clone, Subcommand)]
+#[expect(clippy::large_enum_variant, reason = "there is one of them in a run")]
 pub enum Command {
     /// Turn a laboratory's table into a sequence of a measurement set
     Import(Import),
@@ -65,6 +66,9 @@ pub struct FitFlags {
     /// What keeps a curve physical: stable everywhere, or only control points that are not negative
     #[arg(long, value_enum, default_value_t = ConstraintChoice::Stable)]
     pub constraints: ConstraintChoice,
+    /// What weft and warp do under compression: push back as at zero strain, or bear tension only
+    #[arg(long, value_enum, default_value_t = CompressionChoice::ZeroStrain)]
+    pub compression: CompressionChoice,
     /// Threads; the result is the same on any number [default: one a core]
     #[arg(long)]
     pub threads: Option<usize>,
@@ -104,6 +108,15 @@ pub enum ConstraintChoice {
     ControlPoints,
 }
 
+/// What weft and warp do under compression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CompressionChoice {
+    /// Push back with the stiffness at zero strain
+    ZeroStrain,
+    /// Bear tension only
+    None,
+}
+
 impl FitFlags {
     /// The folder to write into.
     pub fn output_folder(&self) -> PathBuf {
@@ -119,7 +132,18 @@ impl FitFlags {
             ConstraintChoice::Stable => Constraints::Stable,
             ConstraintChoice::ControlPoints => Constraints::ControlPoints,
         };
-        Settings { model, nodes: self.nodes, points: self.points, constraints, ..Settings::default() }
+        let compression = match self.compression {
+            CompressionChoice::ZeroStrain => Compression::ZeroStrain,
+            CompressionChoice::None => Compression::None,
+        };
+        Settings {
+            model,
+            nodes: self.nodes,
+            points: self.points,
+            constraints,
+            compression,
+            ..Settings::default()
+        }
     }
 
     /// Limits the threads of the whole program.

@@ -169,7 +169,9 @@ impl Pass for HessianPass<'_> {
             for c in 0..S {
                 let Some(curve) = self.curves.get(components[c]) else { continue };
                 let response = curve.response(strains[c]);
-                tangent[c] = area * response.tangent;
+                // A curve that softens has a negative tangent, which clamping drops too.
+                let clamped = self.curvature == Curvature::Clamped;
+                tangent[c] = area * if clamped { response.tangent.max(0.0) } else { response.tangent };
                 stress[c] = area
                     * match self.curvature {
                         // The mixed strains belong to the membrane: a hinge uses its own stress.

@@ -263,7 +263,10 @@ impl<'a> Solver<'a> {
         }
         let (imbalance, asked) = match settings.tolerance {
             Tolerance::Relative(share) => (largest, share * typical / f64::from(nodes.max(1))),
-            Tolerance::Absolute(limit) => (total.sqrt(), limit),
+            Tolerance::Absolute(limit) => {
+                rounding *= f64::from(nodes).sqrt();
+                (total.sqrt(), limit)
+            }
         };
         if asked >= rounding {
             (imbalance, asked, Limit::Tolerance)
