@@ -166,7 +166,7 @@ impl StiffnessCurve {
     }
 
     /// Stress and tangent at a strain.
-    #[inline(always)]
+    #[inline]
     pub fn response(&self, strain: f64) -> Response {
         if strain >= 0.0 {
             return self.positive(strain);

@@ -65,10 +65,13 @@ impl Geometry {
         (n1.cross(n2).dot(&self.edge) / self.length).atan2(n1.dot(n2))
     }
 
-    /// ∂θ/∂x₂ = −|e| n₁/|n₁|², ∂θ/∂x₃ = −|e| n₂/|n₂|²; the edge's ends take what balances force and torque.
+    /// A multiple of ∇θ: ∂θ/∂x₂ = −|e| n₁/|n₁|², ∂θ/∂x₃ = −|e| n₂/|n₂|²; the edge's ends take what balances force and
+    /// torque.
     #[inline(always)]
-    fn gradient(&self) -> [Vector3<f64>; 4] {
-        let [g2, g3] = self.normals.map(|n| n * (-self.length / n.norm_squared()));
+    fn gradient(&self, factor: f64) -> [Vector3<f64>; 4] {
+        let [n1, n2] = &self.normals;
+        let g2 = n1 * (-factor * self.length / n1.norm_squared());
+        let g3 = n2 * (-factor * self.length / n2.norm_squared());
         let [t2, t3] = self.feet;
         [-(g2 * (1.0 - t2) + g3 * (1.0 - t3)), -(g2 * t2 + g3 * t3), g2, g3]
     }
@@ -87,25 +90,22 @@ impl Geometry {
     /// ```
     #[inline(always)]
     fn add_hessian(&self, factor: f64, blocks: &mut [[Matrix3<f64>; 4]; 4]) {
-        let edge = self.edge / self.length;
+        let turns = 1.0 / self.length;
+        let edge = self.edge * turns;
         for side in 0..2 {
             let size = self.normals[side].norm();
-            let (normal, height) = (self.normals[side] / size, size / self.length);
-            let across = (self.wings[side] - self.edge * self.feet[side]) / height;
-            let scaled = (normal * factor).transpose();
-            let tilt = across * scaled;
-            let tilt = tilt + tilt.transpose();
-            let turn = edge * scaled;
-            let turned = turn.transpose();
-            // Lengths are divided into the shares: c/h and d/l.
+            let normal = self.normals[side] * (factor / size);
+            let wing = self.length / size;
+            let across = (self.wings[side] - self.edge * self.feet[side]) * wing;
+            // The factor is in the normal, the lengths are in the shares: c/h and d/l.
             let foot = self.feet[side];
-            let (wing, turns) = (1.0 / height, 1.0 / self.length);
             let shares =
                 [(0, [-(1.0 - foot) * wing, -turns]), (1, [-foot * wing, turns]), (2 + side, [wing, 0.0])];
             for (row, (a, [c_a, d_a])) in shares.into_iter().enumerate() {
                 for (b, [c_b, d_b]) in shares.into_iter().take(row + 1) {
-                    blocks[a][b] +=
-                        tilt * (c_a * c_b + 0.5 * d_a * d_b) + turn * (c_a * d_b) + turned * (d_a * c_b);
+                    let along = across * (c_a * c_b + 0.5 * d_a * d_b);
+                    let [left, right] = [along + edge * (c_a * d_b), along + edge * (d_a * c_b)];
+                    blocks[a][b] += left * normal.transpose() + normal * right.transpose();
                 }
             }
         }
@@ -179,13 +179,13 @@ impl Element<4, 3, 1> for Hinge {
     }
 
     fn gradients(&self, x: &[Point<3>; 4]) -> [[Point<3>; 4]; 1] {
-        [Geometry::new(x).gradient().map(|g| g / self.width)]
+        [Geometry::new(x).gradient(1.0 / self.width)]
     }
 
     #[inline(always)]
     fn evaluate(&self, x: &[Point<3>; 4]) -> ([f64; 1], [[Point<3>; 4]; 1]) {
         let geometry = Geometry::new(x);
-        ([self.strain(&geometry)], [geometry.gradient().map(|g| g / self.width)])
+        ([self.strain(&geometry)], [geometry.gradient(1.0 / self.width)])
     }
 
     #[inline(always)]
