@@ -61,29 +61,33 @@ impl UniformStretch<'_> {
         };
         let (low, high) = (gripped(&|x| x < self.grip + 1e-6), gripped(&|x| x > side - self.grip - 1e-6));
         let clip = |name: &str, vertices| Clip { name: name.into(), mass_kg: 0.0, vertices };
-        MeasurementSet {
-            fabric: Fabric {
-                name: "closed form".into(),
-                width_m: side,
-                height_m: side,
-                areal_density_kg_m2: 0.2,
-                thickness_m: None,
-                source: None,
-                notes: None,
-            },
-            sequences: vec![Sequence {
-                name: "stretch-weft".into(),
-                kind: Kind::StretchWeft,
-                gravity: Vector3::zeros(),
-                noise,
-                force_direction: None,
-                table: None,
-                mesh,
-                clips: vec![clip("low", low), clip("high", high)],
-                frames,
-            }],
-        }
+        let sequence = Sequence {
+            name: "stretch-weft".into(),
+            kind: Kind::StretchWeft,
+            gravity: Vector3::zeros(),
+            noise,
+            force_direction: None,
+            table: None,
+            mesh,
+            clips: vec![clip("low", low), clip("high", high)],
+            frames,
+        };
+        weightless("closed form", vec![sequence])
     }
+}
+
+/// A set of sequences without gravity, for which mass and the sample's size do not matter.
+pub fn weightless(name: &str, sequences: Vec<Sequence>) -> MeasurementSet {
+    let fabric = Fabric {
+        name: name.into(),
+        width_m: 0.1,
+        height_m: 0.1,
+        areal_density_kg_m2: 0.2,
+        thickness_m: None,
+        source: None,
+        notes: None,
+    };
+    MeasurementSet { fabric, sequences }
 }
 
 fn cord(clip: usize, force: Vector3<f64>) -> Cord {

@@ -4,4 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod analytic;
+mod knits;
 mod nist;
+mod strips;
+mod synthetic;

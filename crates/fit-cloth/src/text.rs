@@ -94,7 +94,9 @@ pub fn residuals(stages: &[StageReport]) -> String {
 
 /// Why it stopped, how good it is, what limits it, what to measure next.
 pub fn verdict(stage: &StageReport) -> String {
-    let last = stage.levels.last().map_or("", |level| &level.status[..]);
+    // Levels that did not pay come after the one that was kept.
+    let kept = stage.levels.iter().find(|level| level.points == stage.curve.curve.len());
+    let end = kept.map_or("", |level| &level.status[..]);
     let scatter = &stage.scatter;
     let state = if stage.converged { "converged" } else { "NOT converged" };
     let origin = if scatter.known { "given" } else { "estimated" };
@@ -122,5 +124,5 @@ pub fn verdict(stage: &StageReport) -> String {
         }
         None => "no frame sees all of the curve: measure more frames".into(),
     };
-    format!("{}: {state}: {}, and {last}; {limit}; {next}.", stage.component, stage.growth)
+    format!("{}: {state}: {}, and {end}; {limit}; {next}.", stage.component, stage.growth)
 }

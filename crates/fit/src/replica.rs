@@ -14,6 +14,9 @@ use nalgebra::{Vector2, Vector3};
 /// Largest strain that flattening the clips' motion into the plane may change before the replica moves in space.
 const FLATTENING_STRAIN: f64 = 1e-5;
 
+/// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
+const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
+
 /// A measured sequence made ready for simulation; all in the specimen's own frame.
 #[derive(Debug)]
 pub struct Replica {
@@ -73,7 +76,7 @@ impl Replica {
     ///
     /// # Errors
     /// A rest mesh that is no rectangle; no clip; clips that claim the same node and disagree; no frame in which
-    /// anything is stretched or measured; what the mechanics refuse.
+    /// anything is stretched or measured; springs in long cells; what the mechanics refuse.
     pub fn new(
         sequence: &Sequence,
         specimen: Specimen,
@@ -81,6 +84,7 @@ impl Replica {
         components: &[Component],
         areal_density: f64,
     ) -> Result<Self> {
+        check_cells(sequence, &specimen, model)?;
         let clamped = clamped_nodes(sequence, &specimen)?;
         let blend = Blend::new(&specimen, &clamped);
         let gravity = specimen.turn(&sequence.gravity);
@@ -135,6 +139,19 @@ impl Replica {
     pub fn observations(&self) -> usize {
         self.frames.iter().map(|frame| frame.forces.len()).sum()
     }
+}
+
+/// Refuses cells in which springs would not be what they are meant for.
+fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result<()> {
+    let [dx, dy] = specimen.grid.cell();
+    if model != Model::Springs || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
+        return Ok(());
+    }
+    Err(Error::Geometry {
+        sequence: sequence.name.clone(),
+        found: format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
+        expected: "cells at most 2.4 times as long as wide (choose the nodes by the specimen's sides)".into(),
+    })
 }
 
 /// Which clip holds each node: what lies in the bounding box of the clip's vertices, give or take half a cell.
@@ -340,4 +357,35 @@ fn force_components(
         }));
     }
     components
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::mesh::{Diagonals, Grid};
+
+    #[test]
+    fn springs_in_long_cells_are_refused() {
+        let side = 0.1;
+        let square = Grid { columns: 2, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
+        let sequence = Sequence {
+            name: "square".into(),
+            kind: Kind::StretchWeft,
+            gravity: Vector3::zeros(),
+            noise: None,
+            force_direction: None,
+            table: None,
+            mesh: square.mesh().unwrap(),
+            clips: Vec::new(),
+            frames: Vec::new(),
+        };
+        let message = |model, nodes| {
+            let specimen = Specimen::new(&sequence, Some(nodes), Diagonals::Forward).unwrap();
+            Replica::new(&sequence, specimen, model, &[Component::StretchWeft], 0.2).unwrap_err().to_string()
+        };
+        let long = "sequence square: found springs in cells of 8.33e-3 m × 2.50e-2 m";
+        assert!(message(Model::Springs, [13, 5]).starts_with(long));
+        assert!(message(Model::Springs, [13, 7]).contains("found no clip"));
+        assert!(message(Model::Stvk, [13, 5]).contains("found no clip"));
+    }
 }
