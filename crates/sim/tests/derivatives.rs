@@ -106,8 +106,10 @@ fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
         std::array::from_fn::<_, K, _>(|a| (0..S).map(|c| gradients[c][a] * strains[c]).sum::<Vector3<f64>>())
     };
     let (before, after) = (force(&nodes), force(&moved));
-    // The largest force of an element is that of a strain of one.
-    let largest = element.gradients(&nodes).iter().flatten().fold(0.0, |m: f64, g| m.max(g.norm()));
+    // The element's own largest force, but no less than that of a strain of one: at rest it has none. (A hinge's strain
+    // is in 1/m and reaches 10³.)
+    let unit = element.gradients(&nodes).iter().flatten().fold(0.0, |m: f64, g| m.max(g.norm()));
+    let largest = before.iter().fold(unit, |m: f64, f| m.max(f.norm()));
     for (before, after) in before.iter().zip(&after) {
         errors.rigid = errors.rigid.max((rotation * before - after).norm() / largest);
     }
