@@ -190,12 +190,57 @@ fn a_flipped_force_sign_is_named() {
 }
 
 #[test]
+fn a_single_flipped_force_is_pointed_at() {
+    let mut set = measure(&rig());
+    for sequence in &mut set.sequences {
+        sequence.frames[9].cords.iter_mut().for_each(|cord| cord.force = -cord.force);
+    }
+    assert_eq!(fit_weft(&set, Model::Stvk).sequences[0].outliers, [9]);
+}
+
+#[test]
+fn a_pull_along_the_other_yarns_is_named() {
+    let mut set = measure(&rig());
+    // The warp test, labelled as one of weft.
+    set.sequences.retain(|sequence| sequence.name == "stretch-warp");
+    set.sequences[0].kind = cloth_fit::frame::Kind::StretchWeft;
+    let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
+    assert!(error.to_string().contains("check kind"), "{error}");
+}
+
+#[test]
+fn too_few_frames_give_a_curve_without_a_band() {
+    let mut set = measure(&Rig { noise: false, ..rig() });
+    set.sequences.iter_mut().for_each(|sequence| sequence.frames = vec![sequence.frames[8].clone()]);
+    set.sequences.iter_mut().for_each(|sequence| sequence.force_direction = Some(Vector3::x()));
+    for frame in set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames) {
+        frame.cords.truncate(1);
+    }
+    let report = fit_weft(&set, Model::Stvk);
+    assert_eq!(report.curve.curve.len(), 1);
+    assert!(report.curve.samples.iter().all(|sample| sample.band.is_none()));
+}
+
+#[test]
+fn a_long_strip_on_flat_cells_needs_no_steps() {
+    // Blending between the bars must be exact on any cell: 25×25 nodes over 10:1.
+    let mut fabric = denim();
+    fabric.height_m = 0.01;
+    let set = rig().measure(&fabric).unwrap();
+    let settings = Settings { nodes: Some([25, 25]), ..settings(Model::Stvk) };
+    let report = fit(&set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap();
+    assert!(report.converged && report.dropped.is_empty());
+    assert_eq!(report.counters.iterations, 0);
+}
+
+#[test]
 fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
     let report = fit_weft(&measure(&rig()), Model::Stvk);
     let other = measure(&Rig { seed: 77, frames: 7, ..rig() });
     let predicted =
         predict(&other, Component::StretchWeft, &report.curve.curve, &settings(Model::Stvk)).unwrap();
-    let sequence = &predicted[0];
+    assert!(predicted.dropped.is_empty());
+    let sequence = &predicted.sequences[0];
     println!("prediction: rms {:.2e} N of {:.1} N", sequence.force_rms, sequence.force_largest);
     assert!(sequence.force_rms < 0.002 * sequence.force_largest && sequence.frames == 13);
 }

@@ -156,7 +156,9 @@ fn predicted(model: Model) -> usize {
         let unknown = weightless(&knit.name, vec![fourth, fifth]);
         let report = stretch::fit(&known, component, &settings, &mut Watch::default()).unwrap().unwrap();
         assert!(report.converged && report.dropped.is_empty());
-        let predictions = stretch::predict(&unknown, component, &report.curve.curve, &settings).unwrap();
+        let prediction = stretch::predict(&unknown, component, &report.curve.curve, &settings).unwrap();
+        assert!(prediction.dropped.is_empty() && report.dropped.is_empty());
+        let predictions = prediction.sequences;
 
         let measured = report.sequences.iter().map(|video| knit.at_strains(video, |row| row.measured));
         let mut mean = vec![0.0; knit.strains.len()];

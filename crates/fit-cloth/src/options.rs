@@ -153,9 +153,9 @@ impl FitFlags {
     pub fn use_threads(&self) -> Result<(), Failure> {
         let Some(threads) = self.threads else { return Ok(()) };
         let refused =
-            |found: String| Error::Setting { field: "threads", found, expected: "1 or more".into() };
-        if threads == 0 {
-            return Err(refused("0".into()).into());
+            |found: String| Error::Setting { field: "threads", found, expected: "1 to 1024".into() };
+        if !(1..=1024).contains(&threads) {
+            return Err(refused(threads.to_string()).into());
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         pool.map_err(|error| refused(error.to_string()).into())

@@ -18,7 +18,8 @@ pub fn iterations(stage: &StageReport) -> String {
         // The level's residual belongs to its last iteration; sums of squares give the others in proportion.
         let last = level.iterations.last().map_or(1.0, |iteration| iteration.sum_of_squares);
         for iteration in &level.iterations {
-            let rms = level.rms * (iteration.sum_of_squares / last).sqrt();
+            let rms =
+                if last > 0.0 { level.rms * (iteration.sum_of_squares / last).sqrt() } else { level.rms };
             let gain = iteration.gain.map_or("-".into(), |gain| format!("{gain:.1e}"));
             let _ = writeln!(
                 text,
@@ -47,11 +48,9 @@ pub fn curve(stage: &StageReport) -> String {
     let mut text =
         format!("  strain      stiffness [N/m]       stress [N/m]   (seen from {low:.4} to {high:.4})\n");
     for (i, (strain, k)) in report.curve.strains().iter().zip(report.curve.stiffnesses()).enumerate() {
-        let deviation = match report.deviations[i] {
-            Some(deviation) => {
-                format!("± {:.1} %", 100.0 * 1.96 * deviation / k.abs().max(f64::MIN_POSITIVE))
-            }
-            None => "not seen".into(),
+        let deviation = match report.half_bands[i] {
+            Some(half) => format!("± {:.1} %", 100.0 * half / k.abs().max(f64::MIN_POSITIVE)),
+            None => "not known".into(),
         };
         let _ = writeln!(text, "  {strain:<8.5}  {k:12.5e} {deviation:>10}  {:12.5e}", k * strain);
     }
@@ -92,6 +91,29 @@ pub fn residuals(stages: &[StageReport]) -> String {
     text
 }
 
+/// Frames that take no part, and frames to look at.
+fn oddities(stage: &StageReport) -> String {
+    let mut text = String::new();
+    for dropped in &stage.dropped {
+        let _ = write!(
+            text,
+            " Frame {} of {} takes no part: {}.",
+            dropped.frame, dropped.sequence, dropped.status
+        );
+    }
+    for sequence in stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty()) {
+        let frames: Vec<String> = sequence.outliers.iter().take(8).map(|frame| frame.to_string()).collect();
+        let more = if sequence.outliers.len() > 8 { " and others" } else { "" };
+        let _ = write!(
+            text,
+            " Look at frame {}{more} of {}: far off the rest.",
+            frames.join(", "),
+            sequence.name
+        );
+    }
+    text
+}
+
 /// Why it stopped, how good it is, what limits it, what to measure next.
 pub fn verdict(stage: &StageReport) -> String {
     // Levels that did not pay come after the one that was kept.
@@ -122,7 +144,7 @@ pub fn verdict(stage: &StageReport) -> String {
                 50.0 * width / largest.max(f64::MIN_POSITIVE)
             )
         }
-        None => "no frame sees all of the curve: measure more frames".into(),
+        None => "too few frames to judge all of the curve by: measure more".into(),
     };
-    format!("{}: {state}: {}, and {end}; {limit}; {next}.", stage.component, stage.growth)
+    format!("{}: {state}: {}, and {end}; {limit}; {next}.{}", stage.component, stage.growth, oddities(stage))
 }

@@ -175,6 +175,49 @@ fn a_folder_with_other_things_in_it_is_refused_and_a_former_result_replaced() {
 }
 
 #[test]
+fn nothing_beside_a_result_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    assert!(fit(&fixture(), &out, &[]).status.success());
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    assert_eq!(fit(&fixture(), &out, &[]).status.code(), Some(3));
+    assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
+    let set = folder.path().join("set");
+    copy(&fixture(), &set);
+    for inside in [set.clone(), set.join("result")] {
+        assert_eq!(fit(&set, &inside, &[]).status.code(), Some(3));
+    }
+    fs::write(set.join("notes.txt"), "mine").unwrap();
+    let rig = run(&[
+        "rig",
+        "--fabric",
+        "cotton-denim",
+        "--out",
+        &text(&set),
+        "--nodes",
+        "5x5",
+        "--measured",
+        "3x3",
+    ]);
+    assert_eq!(rig.status.code(), Some(3));
+    assert_eq!(fs::read_to_string(set.join("notes.txt")).unwrap(), "mine");
+}
+
+#[test]
+fn a_reader_who_has_read_enough_does_not_cost_the_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_fit-cloth"))
+        .args(["stretch", &text(&fixture()), "--out", &text(&out), "--nodes", "9x9"])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+    assert!(out.join("material.json").exists());
+}
+
+#[test]
 fn a_rig_makes_a_set_that_can_be_fitted() {
     let folder = tempfile::tempdir().unwrap();
     let set = folder.path().join("denim");

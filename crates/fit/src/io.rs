@@ -251,11 +251,15 @@ fn folder_name(folder: &Path) -> Result<String> {
 /// A sequence's name, if it can be a folder's.
 fn checked_name(sequence: &Sequence) -> Result<&str> {
     let name = sequence.name.as_str();
-    if name.is_empty() || name.starts_with('.') || name.contains(['/', '\\', '\0']) {
+    if name.is_empty()
+        || name.starts_with('.')
+        || name.contains(['/', '\\', ',', '"'])
+        || name.contains(char::is_control)
+    {
         return Err(Error::Setting {
             field: "sequences[].name",
             found: source::shown(name),
-            expected: "the name of a folder that is not hidden".into(),
+            expected: "the name of a folder that is not hidden, without comma or quote".into(),
         });
     }
     Ok(name)

@@ -143,7 +143,7 @@ impl MaterialFile {
     /// A file that cannot be read, or is no such file, with line and field.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
-        let file: Self = serde_json::from_str(&text).map_err(|error| {
+        let refuse = |error: serde_json::Error| {
             Error::input(
                 path,
                 error.line(),
@@ -151,11 +151,13 @@ impl MaterialFile {
                 error.to_string(),
                 "a material.json that fit-cloth wrote",
             )
-        })?;
-        if file.schema != SCHEMA {
-            return Err(Error::input(path, None, "schema", file.schema, SCHEMA));
+        };
+        // The version first: another one may well have other fields.
+        let value: serde_json::Value = serde_json::from_str(&text).map_err(refuse)?;
+        if value["schema"] != SCHEMA {
+            return Err(Error::input(path, None, "schema", value["schema"].to_string(), SCHEMA));
         }
-        Ok(file)
+        serde_json::from_str(&text).map_err(refuse)
     }
 
     /// The file's text.

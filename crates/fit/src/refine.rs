@@ -9,6 +9,7 @@ use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::report::Level;
 use crate::simulation::Simulation;
 use crate::stage::{Constraints, Event, Settings, Watch};
+use crate::uncertainty::Covariance;
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
@@ -50,6 +51,10 @@ pub fn grow(
     let clock = Instant::now();
     let spent_before = watch.meter.read();
     let measurements = simulation.measurements() as f64;
+    // A curve with as many points as there are frames meets them all and says nothing; without a known noise one frame
+    // more is needed to judge it by.
+    let spare = usize::from(!simulation.noise_is_known());
+    let most = settings.points.min(simulation.frames().count().saturating_sub(spare)).max(1);
     let unit = simulation.unit();
     let mut levels = Vec::new();
     let mut kept: Option<(StiffnessCurve, Outcome, Domain, f64)> = None;
@@ -81,9 +86,10 @@ pub fn grow(
         curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
         let (status, iterations) = (outcome.status.to_string(), outcome.iterations.clone());
         levels.push(Level { points, rms, status, iterations });
-        let all = points >= settings.points;
+        let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
+        let all = points >= most;
         let best = match kept {
-            Some(best) if !pays(best.3, rms) => {
+            Some(best) if !told_apart || !pays(best.3, rms) => {
                 tries += 1;
                 best
             }
@@ -94,6 +100,9 @@ pub fn grow(
         };
         if all || tries == TRIES {
             let stopped = match tries {
+                0 if points < settings.points => {
+                    format!("the frames carry no more than {points} control points")
+                }
                 0 => format!("all {points} control points are in use"),
                 _ => format!(
                     "{points} control points lower the residual by less than {:.0} %",
@@ -105,7 +114,7 @@ pub fn grow(
         }
         kept = Some(best);
         let visited = simulation.visited()[1].max(f64::MIN_POSITIVE);
-        curve = curve.resampled(next_points(points, settings.points), visited)?;
+        curve = curve.resampled(next_points(points, most), visited)?;
     }
 }
 

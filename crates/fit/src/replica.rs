@@ -225,7 +225,13 @@ struct Blend {
 impl Blend {
     fn new(specimen: &Specimen, clamped: &[Option<usize>]) -> Self {
         let clips = clamped.iter().flatten().max().map_or(0, |last| last + 1);
-        Self { weights: (0..clips).map(|clip| harmonic(specimen, clamped, clip)).collect() }
+        let mut weights: Vec<Vec<f64>> = (0..clips).map(|clip| harmonic(specimen, clamped, clip)).collect();
+        // They sum to one but for rounding; exactly, so that a rigid motion of all clips stays one.
+        for node in 0..clamped.len() {
+            let sum: f64 = weights.iter().map(|weights| weights[node]).sum();
+            weights.iter_mut().for_each(|weights| weights[node] /= sum);
+        }
+        Self { weights }
     }
 
     /// The blended shape of a frame, in the specimen's frame.
@@ -268,42 +274,55 @@ impl Blend {
     }
 }
 
-/// Solves the graph Laplace equation by successive over-relaxation: a few hundred sweeps of a small grid.
+/// Solves Laplace's equation on the grid by conjugate gradients: a weight of 1 at a clip's nodes, 0 at the others', nothing
+/// flowing out at the border.
 fn harmonic(specimen: &Specimen, clamped: &[Option<usize>], clip: usize) -> Vec<f64> {
     let grid = &specimen.grid;
-    let mut weights: Vec<f64> =
-        clamped.iter().map(|&holder| if holder == Some(clip) { 1.0 } else { 0.0 }).collect();
-    let larger = grid.columns.max(grid.rows) as f64;
-    let relaxation = 2.0 / (1.0 + (std::f64::consts::PI / larger).sin());
-    for _ in 0..20 * grid.columns.max(grid.rows) {
-        let mut change: f64 = 0.0;
+    let [dx, dy] = grid.cell();
+    // Conductances along the grid's lines; those at the border carry half.
+    let line = |at: usize, count: usize| if at == 0 || at == count - 1 { 0.5 } else { 1.0 };
+    let flow = |weights: &[f64]| -> Vec<f64> {
+        let mut flow = vec![0.0; weights.len()];
+        let mut exchange = |a: usize, b: usize, conductance: f64| {
+            let current = conductance * (weights[a] - weights[b]);
+            flow[a] += current;
+            flow[b] -= current;
+        };
         for row in 0..grid.rows {
-            for column in 0..grid.columns {
-                let node = grid.node(column, row);
-                if clamped[node].is_some() {
-                    continue;
-                }
-                // Mirrored at the border, so that nothing flows out there.
-                let columns = [column.checked_sub(1).unwrap_or(1), mirrored(column + 1, grid.columns)];
-                let rows = [row.checked_sub(1).unwrap_or(1), mirrored(row + 1, grid.rows)];
-                let [dx, dy] = grid.cell();
-                let [along, across] = [1.0 / (dx * dx), 1.0 / (dy * dy)];
-                let sum = along * columns.iter().map(|&c| weights[grid.node(c, row)]).sum::<f64>()
-                    + across * rows.iter().map(|&r| weights[grid.node(column, r)]).sum::<f64>();
-                let step = sum / (2.0 * (along + across)) - weights[node];
-                weights[node] += relaxation * step;
-                change = change.max(step.abs());
+            for column in 1..grid.columns {
+                let conductance = dy / dx * line(row, grid.rows);
+                exchange(grid.node(column - 1, row), grid.node(column, row), conductance);
             }
         }
-        if change < 1e-12 {
+        for row in 1..grid.rows {
+            for column in 0..grid.columns {
+                let conductance = dx / dy * line(column, grid.columns);
+                exchange(grid.node(column, row - 1), grid.node(column, row), conductance);
+            }
+        }
+        flow.iter_mut().zip(clamped).filter(|(_, clip)| clip.is_some()).for_each(|(f, _)| *f = 0.0);
+        flow
+    };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut weights: Vec<f64> =
+        clamped.iter().map(|&holder| if holder == Some(clip) { 1.0 } else { 0.0 }).collect();
+    let mut residual: Vec<f64> = flow(&weights).iter().map(|f| -f).collect();
+    let mut direction = residual.clone();
+    let mut square = dot(&residual, &residual);
+    let enough = 1e-26 * square;
+    // In exact arithmetic as many steps as unknowns would do; rounding may ask for a few more.
+    for _ in 0..4 * weights.len() {
+        if square <= enough {
             break;
         }
+        let image = flow(&direction);
+        let length = square / dot(&direction, &image);
+        weights.iter_mut().zip(&direction).for_each(|(w, d)| *w += length * d);
+        residual.iter_mut().zip(&image).for_each(|(r, i)| *r -= length * i);
+        let before = std::mem::replace(&mut square, dot(&residual, &residual));
+        direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + square / before * *d);
     }
     weights
-}
-
-fn mirrored(index: usize, count: usize) -> usize {
-    if index < count { index } else { count - 2 }
 }
 
 /// True if the clips' nodes leave their common plane z = const so little that flattening changes no strain noticeably.

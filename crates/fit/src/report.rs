@@ -67,6 +67,8 @@ pub struct SequenceReport {
     pub force_largest: f64,
     /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
     pub position_rms: Option<f64>,
+    /// Frames whose force is off by more than six times the usual (median) residual: a slip, or a wrong sign.
+    pub outliers: Vec<usize>,
     /// Measured stiffness on loading and on unloading, as multiples of the curve's.
     pub hysteresis: Option<Hysteresis>,
     /// Every force component of every frame.
@@ -128,7 +130,7 @@ pub struct StageReport {
     pub scatter: Scatter,
     /// How each sequence was met.
     pub sequences: Vec<SequenceReport>,
-    /// Frames whose equilibrium was not found at the start.
+    /// Frames whose equilibrium was not found; they take no part.
     pub dropped: Vec<DroppedFrame>,
     /// The levels of the curve's growth.
     pub levels: Vec<Level>,

@@ -6,13 +6,15 @@ use crate::material_file::MaterialFile;
 use crate::report::{CurveReport, StageReport};
 use crate::stage::Settings;
 use crate::store::write_file;
+use cloth_sim::material::Model;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Refuses an output folder that holds something other than a former result.
 ///
 /// # Errors
-/// A file, or a folder that is not empty and holds no `material.json`, itself or in each of its folders.
+/// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several. Hidden files
+/// do not count.
 pub fn check_output(folder: &Path) -> Result<()> {
     let refuse = |found: &str| {
         Err(Error::input(
@@ -29,14 +31,30 @@ pub fn check_output(folder: &Path) -> Result<()> {
     if !folder.is_dir() {
         return refuse("a file");
     }
-    let entries = std::fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
-    let entries: Vec<_> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-    let is_result = |folder: &Path| folder.join("material.json").is_file();
-    if entries.is_empty() || is_result(folder) || entries.iter().all(|entry| is_result(entry)) {
+    std::fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
+    let name =
+        |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let visible = |folder: &Path| -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        entries.filter(|path| !name(path).starts_with('.')).collect()
+    };
+    // Nothing but what a fit writes: what stands beside it must not go with it.
+    let is_result = |folder: &Path| {
+        folder.join("material.json").is_file()
+            && visible(folder).iter().all(|path| WRITTEN.contains(&&name(path)[..]))
+    };
+    let is_model = |folder: &PathBuf| {
+        Model::ALL.iter().any(|model| model.to_string() == name(folder)) && is_result(folder)
+    };
+    let entries = visible(folder);
+    if entries.is_empty() || is_result(folder) || entries.iter().all(is_model) {
         return Ok(());
     }
     refuse("a folder with other things in it")
 }
+
+/// What stands in a result folder.
+const WRITTEN: [&str; 5] = ["material.json", "curves", "plots", "residuals.csv", "forces.csv"];
 
 /// Writes the result of one model into a folder that exists.
 ///

@@ -113,11 +113,14 @@ impl Rig {
                 return setting(field, format!("{columns}x{rows}"), "3 to 400 nodes a side");
             }
         }
-        if self.frames == 0 || self.cycles == 0 {
+        if self.frames == 0
+            || self.cycles == 0
+            || !self.frames.checked_mul(self.cycles).is_some_and(|all| all <= 10_000)
+        {
             return setting(
                 "frames",
                 format!("{} in {} cycles", self.frames, self.cycles),
-                "at least one frame and cycle",
+                "at least one frame and cycle, and at most 10000 in all",
             );
         }
         Ok(())

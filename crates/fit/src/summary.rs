@@ -73,6 +73,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 force_rms: 0.0,
                 force_largest: 0.0,
                 position_rms: None,
+                outliers: Vec::new(),
                 hysteresis: None,
                 forces: Vec::new(),
             });
@@ -86,12 +87,15 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
             // The simulated cord force: what the cloth pulls with, less the clip's weight.
             let simulated = cloth + component.measured - component.force;
             let [up, up_square, down, down_square] = &mut sums[at];
-            let [product, square] = match frame.phase {
-                Phase::Unloading => [down, down_square],
-                _ => [up, up_square],
+            let branch = match frame.phase {
+                Phase::Loading => Some([up, up_square]),
+                Phase::Unloading => Some([down, down_square]),
+                Phase::Hold => None,
             };
-            *product += component.measured * simulated;
-            *square += simulated * simulated;
+            if let Some([product, square]) = branch {
+                *product += component.measured * simulated;
+                *square += simulated * simulated;
+            }
             report.force_largest = report.force_largest.max(component.measured.abs());
             report.forces.push(ForceRow {
                 frame: frame.index,
@@ -116,10 +120,27 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     {
         let squares: f64 = report.forces.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
         report.force_rms = (squares / report.forces.len() as f64).sqrt();
+        report.outliers = outliers(&report.forces);
         report.position_rms = (count > 0).then(|| (square / count as f64).sqrt());
         if up_square > 0.0 && down_square > 0.0 {
             report.hysteresis = Some(Hysteresis { loading: up / up_square, unloading: down / down_square });
         }
     }
     reports
+}
+
+/// Frames with a residual beyond six times 1.4826 medians of its size, the robust standard deviation (Hampel 1974), among
+/// those of the same clip and direction; none among fewer than eight.
+fn outliers(rows: &[ForceRow]) -> Vec<usize> {
+    let size = |row: &ForceRow| (row.measured - row.simulated).abs();
+    let far = |row: &&ForceRow| {
+        let alike = rows.iter().filter(|other| other.clip == row.clip && other.direction == row.direction);
+        let mut sizes: Vec<f64> = alike.map(size).collect();
+        sizes.sort_by(f64::total_cmp);
+        let usual = 1.4826 * sizes[sizes.len() / 2];
+        sizes.len() >= 8 && size(row) > 6.0 * usual
+    };
+    let mut frames: Vec<usize> = rows.iter().filter(far).map(|row| row.frame).collect();
+    frames.dedup();
+    frames
 }

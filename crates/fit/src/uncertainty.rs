@@ -110,8 +110,11 @@ fn chi_square_99(freedom: f64) -> f64 {
     freedom * (1.0 - spread + Z_99 * spread.sqrt()).powi(3)
 }
 
-/// 97.5 % quantile of Student's t (Cornish–Fisher expansion; within 1 % from 3 degrees of freedom on).
+/// 97.5 % quantile of Student's t (Cornish–Fisher expansion, within 1 % from 3 degrees of freedom on; tabled below).
 fn student_975(freedom: f64) -> f64 {
+    if freedom < 3.0 {
+        return if freedom < 2.0 { 12.706 } else { 4.303 };
+    }
     let z = Z_975;
     let z2 = z * z;
     let terms = [
@@ -131,8 +134,8 @@ pub struct Covariance {
     pub rank: usize,
     /// Directions that they do not see, as columns.
     pub unseen: DMatrix<f64>,
-    /// Standard deviations to either side of a 95 % band.
-    quantile: f64,
+    /// Standard deviations to either side of a 95 % band; `None` where nothing is left to judge the noise by.
+    quantile: Option<f64>,
 }
 
 impl Covariance {
@@ -165,30 +168,36 @@ impl Covariance {
         let unseen =
             if unseen.is_empty() { DMatrix::zeros(parameters, 0) } else { DMatrix::from_columns(&unseen) };
         // What was estimated from few residuals is itself uncertain.
-        let exact = scatter.known && scatter.misfit == 0.0;
-        let quantile = if exact { Z_975 } else { student_975(scatter.freedom.max(1) as f64) };
+        let quantile = match scatter.freedom {
+            _ if scatter.known && scatter.misfit == 0.0 => Some(Z_975),
+            0 => None,
+            freedom => Some(student_975(freedom as f64)),
+        };
         Self { matrix, rank, unseen, quantile }
     }
 
-    /// Half the width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it.
+    /// Half the width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave nothing to judge it by.
     pub fn half_band(&self, weights: &DVector<f64>) -> Option<f64> {
         let hidden = (self.unseen.transpose() * weights).norm();
         if hidden > 1e-6 * weights.norm() {
             return None;
         }
-        Some(self.quantile * (weights.transpose() * &self.matrix * weights)[0].max(0.0).sqrt())
+        Some(self.quantile? * (weights.transpose() * &self.matrix * weights)[0].max(0.0).sqrt())
     }
 
     /// Standard deviation of each control value; `None` for one that the data do not see.
     pub fn standard_deviations(&self) -> Vec<Option<f64>> {
         (0..self.matrix.ncols())
-            .map(|i| (self.unseen.row(i).norm() <= 1e-6).then(|| self.matrix[(i, i)].max(0.0).sqrt()))
+            .map(|i| {
+                let seen = self.quantile.is_some() && self.unseen.row(i).norm() <= 1e-6;
+                seen.then(|| self.matrix[(i, i)].max(0.0).sqrt())
+            })
             .collect()
     }
 
     /// Half the 95 % band of each control value; `None` for one that the data do not see.
     pub fn half_bands(&self) -> Vec<Option<f64>> {
-        let band = |deviation: Option<f64>| deviation.map(|deviation| self.quantile * deviation);
+        let band = |deviation: Option<f64>| Some(self.quantile? * deviation?);
         self.standard_deviations().into_iter().map(band).collect()
     }
 
@@ -281,7 +290,7 @@ mod tests {
 
     #[test]
     fn quantiles_match_tables() {
-        for (freedom, t) in [(3.0, 3.182), (5.0, 2.571), (10.0, 2.228), (30.0, 2.042)] {
+        for (freedom, t) in [(1.0, 12.706), (3.0, 3.182), (5.0, 2.571), (10.0, 2.228), (30.0, 2.042)] {
             assert!((student_975(freedom) / t - 1.0).abs() < 0.01);
         }
         for (freedom, chi) in [(5.0, 15.086), (20.0, 37.566), (100.0, 135.807)] {

@@ -54,7 +54,11 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
 /// The nodes' coordinates, from three stacked coordinates a node.
 #[inline(always)]
 pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [Point<N>; K] {
-    nodes.map(|node| Point::from_column_slice(&x[3 * node..3 * node + N]))
+    let mut points = [Point::<N>::zeros(); K];
+    for (point, node) in points.iter_mut().zip(nodes) {
+        point.copy_from_slice(&x[3 * node..3 * node + N]);
+    }
+    points
 }
 
 /// Which matrix a Newton step is made with.
@@ -161,6 +165,7 @@ impl Pass for HessianPass<'_> {
         elements: &[E],
     ) {
         let targets = self.targets[part].chunks_exact(lower_entry_count(K, N));
+        let mut blocks = [[Block::<N>::zeros(); K]; K];
         for (index, (element, targets)) in elements.iter().zip(targets).enumerate() {
             let (components, area) = (element.components(), element.area());
             let x = gather(element.nodes(), self.x);
@@ -179,13 +184,14 @@ impl Pass for HessianPass<'_> {
                         _ => response.stress,
                     };
             }
-            let mut blocks = [[Block::<N>::zeros(); K]; K];
-            for c in 0..S {
-                for a in 0..K {
-                    let scaled = gradients[c][a] * tangent[c];
-                    for b in 0..=a {
-                        blocks[a][b] += scaled * gradients[c][b].transpose();
+            for a in 0..K {
+                let scaled: [Point<N>; S] = std::array::from_fn(|c| gradients[c][a] * tangent[c]);
+                for b in 0..=a {
+                    let mut block = scaled[0] * gradients[0][b].transpose();
+                    for c in 1..S {
+                        block += scaled[c] * gradients[c][b].transpose();
                     }
+                    blocks[a][b] = block;
                 }
             }
             match self.curvature {

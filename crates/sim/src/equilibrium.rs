@@ -209,9 +209,10 @@ impl<'a> Solver<'a> {
     }
 
     /// Derivative of the clips' forces ([`Solver::clip_forces`]) with respect to the unknowns, N/m: 3 × clips rows.
+    /// Empty before the first solve.
     pub fn border(&self) -> &[f64] {
         let start = self.cloth.entries();
-        &self.values[start..self.values.len() - 1]
+        self.values.get(start..self.values.len().saturating_sub(1)).unwrap_or_default()
     }
 
     /// The force that holds each clip at the last solve's state, N, apart from the clip's own weight.

@@ -6,7 +6,7 @@ use crate::options::{Telling, parse_nodes};
 use crate::progress::Progress;
 use clap::Args;
 use cloth_fit::error::Error;
-use cloth_fit::io::write_set;
+use cloth_fit::io::{read_fabric, write_set};
 use cloth_fit::rig::{KnownFabric, Rig};
 use serde_json::json;
 use std::io::Write;
@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLE: &str = "\
 Example:
-  fit-cloth rig --fabric cotton-denim --out out/denim
-  fit-cloth rig --fabric fixtures/fabrics/cotton-denim.toml --frames 40 --seed 7 --out out/denim
+  fit-cloth rig --fabric cotton-denim --out sets/denim
+  fit-cloth rig --fabric fixtures/fabrics/cotton-denim.toml --frames 40 --seed 7 --out sets/denim
 
-The set can be fitted at once: fit-cloth stretch out/denim";
+The set can be fitted at once: fit-cloth stretch sets/denim";
 
 /// The fabrics that come with the program.
 const KNOWN: [(&str, &str); 1] =
@@ -30,7 +30,7 @@ pub struct RigOptions {
     /// A fabric that comes with the program (cotton-denim), or a file like fixtures/fabrics/cotton-denim.toml
     #[arg(long)]
     pub fabric: String,
-    /// The measurement set to write; an existing set is replaced
+    /// The measurement set to write; a set that the rig wrote there before is replaced
     #[arg(long)]
     pub out: PathBuf,
     /// Columns and rows of the simulation: finer than a fit's
@@ -71,6 +71,7 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
         clip_noise: options.clip_noise,
         seed: options.seed,
     };
+    refuse_measured(&options.out)?;
     let progress = Progress::new(&format!("measuring {}", fabric.name), !telling.quiet);
     let set = rig.measure(&fabric)?;
     progress.finish();
@@ -81,6 +82,26 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
     let json = json!({ "set": options.out, "fabric": fabric.name, "sequences": names, "frames": frames });
     tell(telling, output, &text, &json)?;
     Ok(Outcome::Done)
+}
+
+/// Only what a rig wrote is replaced: never a set that somebody measured, or other files.
+fn refuse_measured(folder: &Path) -> Result<(), Failure> {
+    let entries: Vec<String> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| !name.starts_with('.'))
+        .collect();
+    let known = |name: &String| ["fabric.toml", "stretch-weft", "stretch-warp"].contains(&&name[..]);
+    let from_rig = || {
+        read_fabric(folder)
+            .is_ok_and(|fabric| fabric.source.is_some_and(|source| source.starts_with("virtual rig")))
+    };
+    if entries.is_empty() || entries.iter().all(known) && from_rig() {
+        return Ok(());
+    }
+    let expected = "a new or empty folder, or a set that the rig wrote, which is replaced";
+    Err(Error::input(folder, None, "--out", "a folder with other things in it", expected).into())
 }
 
 fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {

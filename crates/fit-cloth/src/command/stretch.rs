@@ -45,11 +45,12 @@ pub fn run(options: &StretchOptions, telling: Telling, output: &mut impl Write) 
     let folder = flags.output_folder();
     flags.use_threads()?;
     check_output(&folder)?;
+    refuse_inside(&folder, &flags.set)?;
     let set = read_set(&flags.set)?;
     let mut results: Vec<(Settings, Vec<StageReport>)> = Vec::new();
     for model in flags.model.models() {
         let settings = flags.settings(model);
-        let stages = fit_model(&set, &flags.set, &settings, telling, output)?;
+        let stages = fit_model(&set, &flags.set, &settings, telling)?;
         results.push((settings, stages));
     }
     let in_folder = |model: Model, folder: &Path| match results.len() {
@@ -63,6 +64,7 @@ pub fn run(options: &StretchOptions, telling: Telling, output: &mut impl Write) 
             write_plots(&folder, stages)
         })
     })?;
+    // All is on disk before the first word: a reader who has read enough must not cost the result.
     if telling.json {
         let mut models = Map::new();
         for (settings, stages) in &results {
@@ -72,10 +74,25 @@ pub fn run(options: &StretchOptions, telling: Telling, output: &mut impl Write) 
         }
         writeln!(output, "{}", Value::Object(models))?;
     } else if !telling.quiet {
+        for (_, stages) in &results {
+            tell_model(&set, stages, output)?;
+        }
         writeln!(output, "Written to {}", folder.display())?;
     }
     let converged = results.iter().flat_map(|(_, stages)| stages).all(|stage| stage.converged);
     Ok(if converged { Outcome::Done } else { Outcome::NotConverged })
+}
+
+/// A result in the place of its own measurements, or among them, would destroy the set.
+fn refuse_inside(folder: &Path, set: &Path) -> Result<(), Failure> {
+    let absolute = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path));
+    match (absolute(folder), absolute(set)) {
+        (Ok(out), Ok(measured)) if out.starts_with(&measured) => {
+            let found = folder.display().to_string();
+            Err(Error::input(set, None, "--out", found, "a folder outside the measurement set").into())
+        }
+        _ => Ok(()),
+    }
 }
 
 fn fit_model(
@@ -83,50 +100,45 @@ fn fit_model(
     path: &Path,
     settings: &Settings,
     telling: Telling,
-    output: &mut impl Write,
 ) -> Result<Vec<StageReport>, Failure> {
-    let speaks = !telling.json && !telling.quiet;
     let mut stages = Vec::new();
-    for component in [Component::StretchWeft, Component::StretchWarp] {
+    for component in COMPONENTS {
         let progress = Progress::new(&format!("{component}, {}", settings.model), !telling.quiet);
         let report = stretch::fit(set, component, settings, &mut progress.watch())?;
         progress.finish();
-        match report {
-            Some(report) => {
-                if speaks {
-                    writeln!(output, "{}", text::iterations(&report))?;
-                    writeln!(output, "{}", text::curve(&report))?;
-                }
-                stages.push(report);
-            }
-            None if speaks => writeln!(output, "{component}: no sequence shows it; it is not fitted\n")?,
-            None => {}
-        }
+        stages.extend(report);
     }
     if stages.is_empty() {
         let found = match set.sequences.len() {
             0 => "no sequence at all".to_string(),
             _ => set.sequences.iter().map(|s| s.kind.to_string()).collect::<Vec<_>>().join(", "),
         };
-        return Err(Error::input(
-            path,
-            None,
-            "kind",
-            found,
-            "a sequence of kind stretch-weft or stretch-warp",
-        )
-        .into());
-    }
-    let unused = set.sequences.iter().filter(|sequence| stretch::component_of(sequence.kind).is_none());
-    for sequence in unused.filter(|_| speaks) {
-        writeln!(output, "{} ({}) takes no part in a fit of stretch\n", sequence.name, sequence.kind)?;
-    }
-    if speaks {
-        writeln!(output, "{}", text::residuals(&stages))?;
-        for stage in &stages {
-            writeln!(output, "{}", text::verdict(stage))?;
-        }
-        writeln!(output)?;
+        let expected = "a sequence of kind stretch-weft or stretch-warp";
+        return Err(Error::input(path, None, "kind", found, expected).into());
     }
     Ok(stages)
 }
+
+/// What one model's fit has found, for a person.
+fn tell_model(set: &MeasurementSet, stages: &[StageReport], output: &mut impl Write) -> Result<(), Failure> {
+    for stage in stages {
+        writeln!(output, "{}\n{}", text::iterations(stage), text::curve(stage))?;
+    }
+    for component in COMPONENTS {
+        if !stages.iter().any(|stage| stage.component == component) {
+            writeln!(output, "{component}: no sequence shows it; it is not fitted\n")?;
+        }
+    }
+    for sequence in set.sequences.iter().filter(|s| stretch::component_of(s.kind).is_none()) {
+        writeln!(output, "{} ({}) takes no part in a fit of stretch\n", sequence.name, sequence.kind)?;
+    }
+    writeln!(output, "{}", text::residuals(stages))?;
+    for stage in stages {
+        writeln!(output, "{}", text::verdict(stage))?;
+    }
+    writeln!(output)?;
+    Ok(())
+}
+
+/// What this command fits.
+const COMPONENTS: [Component; 2] = [Component::StretchWeft, Component::StretchWarp];

@@ -141,7 +141,7 @@ fn what_cannot_be_read_is_not_written() {
     );
     check(
         &|s| s.name = "a/b".into(),
-        "sequences[].name: found a/b, expected the name of a folder that is not hidden",
+        "sequences[].name: found a/b, expected the name of a folder that is not hidden, without comma or quote",
     );
     check(
         &|s| s.frames[1].cords[0].force.x = f64::NAN,

@@ -13,7 +13,7 @@ use crate::gauss_newton::{Domain, Outcome};
 use crate::refine::{domain, grow};
 use crate::replica::Replica;
 use crate::report::{SequenceReport, StageReport};
-use crate::simulation::Simulation;
+use crate::simulation::{DroppedFrame, Simulation};
 use crate::specimen::Specimen;
 use crate::summary::{curve_report, sequence_reports};
 use crate::uncertainty::{Covariance, Scatter};
@@ -53,6 +53,15 @@ pub fn fit(
     };
     // Without any simulation: the range of strain on the blended shapes, a constant stiffness, and the largest one.
     let range = blended_range(&replicas, component);
+    let frames = replicas.iter().flat_map(|replica| &replica.frames);
+    let extension = frames.map(|frame| frame.extension).fold(0.0, f64::max);
+    if range < 0.1 * extension {
+        return Err(unfit(
+            &replicas,
+            format!("clips apart by {extension:.2e} of their distance, and {component} of {range:.2e}"),
+            "a pull along the yarns that the test's kind names: check kind, and vt in mesh.obj",
+        ));
+    }
     let one = constant(1.0, negative)?;
     let mean = gap::start(&replicas, component, &one, &Curves::default(), &Domain::everywhere(1))[0];
     if !(mean > 0.0) {
@@ -79,23 +88,30 @@ pub fn fit(
         settings.equilibrium,
         Arc::clone(&watch.meter),
     );
+    let dropped = simulation.dropped().len();
     if simulation.frames().next().is_none() {
+        let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
         return Err(unfit(
             &replicas,
-            "no frame with an equilibrium".into(),
-            "clips that stretch the specimen",
+            format!("no frame with an equilibrium ({status})"),
+            "clips that stretch the specimen evenly, on cells that are not too long",
         ));
     }
     let growth = grow(&mut simulation, settings, lowest_tangent, watch).map_err(mechanics(component))?;
+    if growth.outcome.residual.is_empty() {
+        let status = growth.outcome.status.to_string();
+        return Err(unfit(&replicas, status, "forces and clips that some curve can answer"));
+    }
+    let tracks = simulation.tracks();
     // The last trial may have been a step that was rejected.
     simulation.set_curve(growth.curve.clone());
     let forces = simulation.settle();
     let Outcome { residual, jacobian, status, .. } = &growth.outcome;
     let noise = simulation.noise_is_known().then_some(1.0);
     let rank = Covariance::rank_of(jacobian);
-    let scatter = Scatter::new(residual, jacobian, rank, &simulation.tracks(), noise);
+    let scatter = Scatter::new(residual, jacobian, rank, &tracks, noise);
     let covariance = Covariance::new(jacobian, &scatter);
-    let converged = status.converged();
+    let converged = status.converged() && simulation.dropped().len() == dropped;
     let (levels, stopped) = (growth.levels.clone(), growth.stopped.clone());
     Ok(Some(StageReport {
         component,
@@ -112,6 +128,16 @@ pub fn fit(
     }))
 }
 
+/// How a known curve meets tests.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// How each sequence was met.
+    pub sequences: Vec<SequenceReport>,
+    /// Frames without an equilibrium, which take no part.
+    pub dropped: Vec<DroppedFrame>,
+}
+
 /// Simulates all sequences that stretch along a component with a known curve: how well they are predicted.
 ///
 /// # Errors
@@ -121,7 +147,7 @@ pub fn predict(
     component: Component,
     curve: &StiffnessCurve,
     settings: &Settings,
-) -> Result<Vec<SequenceReport>> {
+) -> Result<Prediction> {
     settings.validate()?;
     let replicas = replicas(set, component, settings)?;
     let known =
@@ -129,7 +155,10 @@ pub fn predict(
     let mut simulation =
         Simulation::new(&replicas, component, curve.clone(), known, settings.equilibrium, Arc::default());
     let forces = simulation.settle();
-    Ok(sequence_reports(&simulation, &forces))
+    Ok(Prediction {
+        sequences: sequence_reports(&simulation, &forces),
+        dropped: simulation.dropped().to_vec(),
+    })
 }
 
 /// The constant curve across the pull.

@@ -295,7 +295,11 @@ fn a_set_is_made_grows_and_must_agree() {
         "/knit/fabric.toml:4 areal_density_kg_m2: found 300, expected kilograms per square metre, above 0 and at \
          most 10 (convert g/m² to kg/m²: divide by 1000)",
     );
-    refused(&known, "../a", "sequences[].name: found ../a, expected the name of a folder that is not hidden");
+    refused(
+        &known,
+        "../a",
+        "sequences[].name: found ../a, expected the name of a folder that is not hidden, without comma or quote",
+    );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 
     assert_eq!(add(&known, "a", false), Ok(Added::NewSet));
