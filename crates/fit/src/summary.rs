@@ -129,18 +129,36 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     reports
 }
 
-/// Frames with a residual beyond six times 1.4826 medians of its size, the robust standard deviation (Hampel 1974), among
-/// those of the same clip and direction; none among fewer than eight.
+/// Frames whose residual stands out from its neighbours' of the same clip and direction: by more than a fiftieth of the
+/// largest force, and by more than six times the robust standard deviation of such differences (Hampel 1974). A smooth
+/// misfit, shared by neighbours, is none.
 fn outliers(rows: &[ForceRow]) -> Vec<usize> {
-    let size = |row: &ForceRow| (row.measured - row.simulated).abs();
-    let far = |row: &&ForceRow| {
-        let alike = rows.iter().filter(|other| other.clip == row.clip && other.direction == row.direction);
-        let mut sizes: Vec<f64> = alike.map(size).collect();
-        sizes.sort_by(f64::total_cmp);
-        let usual = 1.4826 * sizes[sizes.len() / 2];
-        sizes.len() >= 8 && size(row) > 6.0 * usual
+    let largest = rows.iter().map(|row| row.measured.abs()).fold(0.0, f64::max);
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
     };
-    let mut frames: Vec<usize> = rows.iter().filter(far).map(|row| row.frame).collect();
+    let mut frames = Vec::new();
+    let mut first: Vec<&ForceRow> = Vec::new();
+    for row in rows {
+        if first.iter().any(|seen| seen.clip == row.clip && seen.direction == row.direction) {
+            continue;
+        }
+        first.push(row);
+        let track: Vec<&ForceRow> =
+            rows.iter().filter(|other| other.clip == row.clip && other.direction == row.direction).collect();
+        let residual: Vec<f64> = track.iter().map(|row| row.measured - row.simulated).collect();
+        let apart: Vec<f64> = (0..residual.len())
+            .map(|i| {
+                let around = i.saturating_sub(2)..(i + 3).min(residual.len());
+                (residual[i] - median(residual[around].to_vec())).abs()
+            })
+            .collect();
+        let limit = (6.0 * 1.4826 * median(apart.clone())).max(0.02 * largest);
+        frames
+            .extend(track.iter().zip(&apart).filter(|(_, apart)| **apart > limit).map(|(row, _)| row.frame));
+    }
+    frames.sort_unstable();
     frames.dedup();
     frames
 }
