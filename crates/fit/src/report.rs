@@ -67,7 +67,7 @@ pub struct SequenceReport {
     pub force_largest: f64,
     /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
     pub position_rms: Option<f64>,
-    /// Frames whose residual stands out from its neighbours': a slip, or a wrong sign.
+    /// Frames whose residual stands out from its neighbours', the farthest first: a slip, or a wrong sign.
     pub outliers: Vec<usize>,
     /// Measured stiffness on loading and on unloading, as multiples of the curve's.
     pub hysteresis: Option<Hysteresis>,

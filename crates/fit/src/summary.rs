@@ -131,7 +131,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
 
 /// Frames whose residual stands out from its neighbours' of the same clip and direction: by more than a fiftieth of the
 /// largest force, and by more than six times the robust standard deviation of such differences (Hampel 1974). A smooth
-/// misfit, shared by neighbours, is none.
+/// misfit, shared by neighbours, is none. The farthest first: it drags the fit, and others with it.
 fn outliers(rows: &[ForceRow]) -> Vec<usize> {
     let largest = rows.iter().map(|row| row.measured.abs()).fold(0.0, f64::max);
     let median = |mut values: Vec<f64>| {
