@@ -115,7 +115,7 @@ impl Rig {
         }
         if self.frames == 0
             || self.cycles == 0
-            || !self.frames.checked_mul(self.cycles).is_some_and(|all| all <= 10_000)
+            || self.frames.checked_mul(self.cycles).is_none_or(|all| all > 10_000)
         {
             return setting(
                 "frames",

@@ -155,10 +155,14 @@ fn outliers(rows: &[ForceRow]) -> Vec<usize> {
             })
             .collect();
         let limit = (6.0 * 1.4826 * median(apart.clone())).max(0.02 * largest);
-        frames
-            .extend(track.iter().zip(&apart).filter(|(_, apart)| **apart > limit).map(|(row, _)| row.frame));
+        frames.extend(track.iter().map(|row| row.frame).zip(apart).filter(|(_, apart)| *apart > limit));
     }
-    frames.sort_unstable();
-    frames.dedup();
-    frames
+    frames.sort_by(|(_, a), (_, b): &(usize, f64)| b.total_cmp(a));
+    let mut found: Vec<usize> = Vec::new();
+    for (frame, _) in frames {
+        if !found.contains(&frame) {
+            found.push(frame);
+        }
+    }
+    found
 }
