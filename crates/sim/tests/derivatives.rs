@@ -28,6 +28,13 @@ struct Errors {
     clamped: f64,
 }
 
+impl std::fmt::LowerExp for Errors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { gradient, hessian, rigid, .. } = self;
+        write!(f, "gradient {gradient:.1e}, Hessian {hessian:.1e}, rigid motion {rigid:.1e}")
+    }
+}
+
 fn stack<const K: usize, const N: usize>(x: &[f64]) -> [Point<N>; K] {
     std::array::from_fn(|a| Point::from_column_slice(&x[N * a..N * a + N]))
 }
@@ -215,6 +222,7 @@ fn run(states: usize) {
     }
     assert!(folds > states / 3, "{folds} folded states");
     for (name, errors) in [("stvk", stvk), ("soft", soft), ("spring", spring), ("hinge", shell)] {
+        println!("{name}, {states} states: {errors:e}");
         assert!(errors.gradient <= 1e-6, "{name}: {errors:?}");
         assert!(errors.hessian <= 1e-5, "{name}: {errors:?}");
         assert!(errors.rigid <= 1e-9, "{name}: {errors:?}");
