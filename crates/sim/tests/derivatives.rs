@@ -8,6 +8,8 @@
 //!
 //! The seeded states number 2 000 an element here; `full_count` (ignored) runs 1e5.
 
+#![allow(clippy::print_stdout)]
+
 use cloth_sim::bending::Hinge;
 use cloth_sim::element::{Element, Point};
 use cloth_sim::finite_difference::derivative_error;
