@@ -10,7 +10,7 @@
 use crate::cloth::{Cloth, ForceScale};
 use crate::element::Curvature;
 use crate::linear::Factor;
-use crate::material::{Component, Curves};
+use crate::material::Curves;
 use nalgebra::Vector3;
 
 /// How equilibria are found.
@@ -223,17 +223,6 @@ impl<'a> Solver<'a> {
     /// The gradient at the last solve's state, N, 3 a node.
     pub fn gradient(&self) -> &[f64] {
         &self.gradient
-    }
-
-    /// See [`Cloth::parameter_gradient`].
-    pub fn parameter_gradient(
-        &self,
-        curves: &Curves,
-        component: Component,
-        x: &[f64],
-        columns: &mut Vec<f64>,
-    ) {
-        self.cloth.parameter_gradient(curves, component, x, columns);
     }
 
     /// The imbalance, what it must come below, and by which limit.
