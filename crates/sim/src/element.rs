@@ -44,7 +44,7 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
         (self.strains(x), self.gradients(x))
     }
 
-    /// Adds the geometric part Σ_c σ_c ∇²ε_c to the blocks `[a][b]` with b ≤ a.
+    /// Adds the geometric part Σ_c σ_c ∇²ε_c to the blocks `[a][b]` with 1 ≤ b ≤ a; see [`complete`] for node 0.
     fn add_geometric(&self, x: &[Point<N>; K], stress: &[f64; S], blocks: &mut [[Block<N>; K]; K]);
 
     /// The same, changed as little as is simple so that it is positive semi-definite.
@@ -59,6 +59,22 @@ pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [
         point.copy_from_slice(&x[3 * node..3 * node + N]);
     }
     points
+}
+
+/// The blocks of node 0, from those of the others: moving all nodes alike changes no strain, so every row of blocks of an
+/// element's Hessian sums to zero. A third of a hinge's work is saved.
+#[inline(always)]
+pub fn complete<const K: usize, const N: usize>(blocks: &mut [[Block<N>; K]; K]) {
+    let mut corner = Block::zeros();
+    for a in 1..K {
+        let mut sum = Block::zeros();
+        for b in 1..K {
+            sum -= if b <= a { blocks[a][b] } else { blocks[b][a].transpose() };
+        }
+        blocks[a][0] = sum;
+        corner -= sum;
+    }
+    blocks[0][0] = corner;
 }
 
 /// Which matrix a Newton step is made with.
@@ -184,9 +200,9 @@ impl Pass for HessianPass<'_> {
                         _ => response.stress,
                     };
             }
-            for a in 0..K {
+            for a in 1..K {
                 let scaled: [Point<N>; S] = std::array::from_fn(|c| gradients[c][a] * tangent[c]);
-                for b in 0..=a {
+                for b in 1..=a {
                     let mut block = scaled[0] * gradients[0][b].transpose();
                     for c in 1..S {
                         block += scaled[c] * gradients[c][b].transpose();
@@ -198,6 +214,7 @@ impl Pass for HessianPass<'_> {
                 Curvature::Clamped => element.add_clamped(&x, &stress, &mut blocks),
                 _ => element.add_geometric(&x, &stress, &mut blocks),
             }
+            complete(&mut blocks);
             let mut targets = targets.iter();
             for a in 0..K {
                 for b in 0..=a {

@@ -11,7 +11,7 @@
 #![allow(clippy::print_stdout)]
 
 use cloth_sim::bending::Hinge;
-use cloth_sim::element::{Element, Point};
+use cloth_sim::element::{Element, Point, complete};
 use cloth_sim::finite_difference::derivative_error;
 use cloth_sim::material::Component;
 use cloth_sim::membrane::{SoftTriangle, Spring, StvkTriangle, Triangle};
@@ -71,6 +71,7 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         stress[c] = 1.0;
         let mut blocks = [[SMatrix::zeros(); K]; K];
         element.add_geometric(&stack::<K, N>(x), &stress, &mut blocks);
+        complete(&mut blocks);
         let hessian = dense(&blocks);
         let component = |x: &[f64]| gradients(x)[c * K * N..(c + 1) * K * N].to_vec();
         let rows: Vec<f64> = hessian.transpose().iter().copied().collect();
@@ -81,6 +82,7 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
     let stress: [f64; S] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
     let mut blocks = [[SMatrix::zeros(); K]; K];
     element.add_clamped(&stack::<K, N>(x), &stress, &mut blocks);
+    complete(&mut blocks);
     let clamped = dense(&blocks).symmetric_eigenvalues();
     if clamped.max() > 0.0 {
         errors.clamped = errors.clamped.max(-clamped.min() / clamped.max());

@@ -99,8 +99,8 @@ impl Geometry {
             let across = (self.wings[side] - self.edge * self.feet[side]) * wing;
             // The factor is in the normal, the lengths are in the shares: c/h and d/l.
             let foot = self.feet[side];
-            let shares =
-                [(0, [-(1.0 - foot) * wing, -turns]), (1, [-foot * wing, turns]), (2 + side, [wing, 0.0])];
+            // Node 0 follows from the others.
+            let shares = [(1, [-foot * wing, turns]), (2 + side, [wing, 0.0])];
             for (row, (a, [c_a, d_a])) in shares.into_iter().enumerate() {
                 for (b, [c_b, d_b]) in shares.into_iter().take(row + 1) {
                     let along = across * (c_a * c_b + 0.5 * d_a * d_b);

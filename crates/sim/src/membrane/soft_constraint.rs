@@ -37,8 +37,8 @@ impl SoftTriangle {
             let length = length(w);
             let normal = w / length;
             let across = (Block::identity() - normal * normal.transpose()) * (stress / length);
-            for a in 0..3 {
-                for b in 0..=a {
+            for a in 1..3 {
+                for b in 1..=a {
                     blocks[a][b] += across * (r[a] * r[b]);
                 }
             }

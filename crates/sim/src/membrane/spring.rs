@@ -62,8 +62,6 @@ impl<const N: usize> Element<2, N, 1> for Spring {
         let (normal, length) = self.length(x);
         let across =
             (Block::identity() - normal * normal.transpose()) * (stress / (length * self.rest_length));
-        blocks[0][0] += across;
-        blocks[1][0] -= across;
         blocks[1][1] += across;
     }
 

@@ -78,8 +78,8 @@ pub(super) fn add_scalar_blocks<const N: usize>(
     blocks: &mut [[Block<N>; 3]; 3],
 ) {
     let Triangle { weft, warp, .. } = triangle;
-    for a in 0..3 {
-        for b in 0..=a {
+    for a in 1..3 {
+        for b in 1..=a {
             let scalar = s_u * weft[a] * weft[b]
                 + s_v * warp[a] * warp[b]
                 + s_uv * (weft[a] * warp[b] + warp[a] * weft[b]);
