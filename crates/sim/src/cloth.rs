@@ -138,11 +138,6 @@ impl Cloth {
         self.pattern.entries()
     }
 
-    /// Number of entries of its Cholesky factor.
-    pub fn factor_entries(&self) -> usize {
-        self.pattern.factor_entries()
-    }
-
     /// Number of clips.
     pub fn clips(&self) -> usize {
         self.clips

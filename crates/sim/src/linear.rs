@@ -80,11 +80,6 @@ impl Pattern {
         self.lower.compute_nnz()
     }
 
-    /// Numbers in the factor.
-    pub(crate) fn factor_entries(&self) -> usize {
-        self.symbolic.len_val()
-    }
-
     /// Where an entry of the lower triangle is stored.
     pub(crate) fn position(&self, row: usize, column: usize) -> Option<usize> {
         let range = self.lower.col_range(column);

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet, Sequence};
 use crate::io::{read_fabric, write_sequence, write_set};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Two numbers that differ by less are one number written twice.
 const SAME: f64 = 1e-6;
@@ -44,7 +44,6 @@ pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, repla
         return Err(Error::input(set_folder, None, "folder", "something else", "a set's folder, or nothing"));
     }
     if !fabric_file.exists() {
-        check_parent(set_folder)?;
         let fabric = new_fabric(&fabric_file, sample, sequence)?;
         write_set(set_folder, &MeasurementSet { fabric, sequences: vec![sequence.clone()] })?;
         return Ok(Added::NewSet);
@@ -63,17 +62,6 @@ pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, repla
     }
     write_sequence(set_folder, sequence)?;
     Ok(if exists { Added::Replaced } else { Added::NewSequence })
-}
-
-fn check_parent(set_folder: &Path) -> Result<()> {
-    let parent = match set_folder.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-        _ => PathBuf::from("."),
-    };
-    if parent.is_dir() {
-        return Ok(());
-    }
-    Err(Error::input(&parent, None, "folder", "nothing", "a folder to make the set in"))
 }
 
 /// The sample of a new set. Its extents are those of the sequence's specimen along the yarns.

@@ -325,10 +325,9 @@ fn a_set_is_made_grows_and_must_agree() {
         "c",
         "/knit/fabric.toml name: found knit, expected denim, the value given (or give none)",
     );
-    let inside = add_to_set(&place.join("x/y"), &known, &sequence("a"), false).unwrap_err();
-    assert!(
-        inside.to_string().ends_with("knit/x folder: found nothing, expected a folder to make the set in")
-    );
+    let elsewhere = tempfile::tempdir().unwrap();
+    let made = add_to_set(&elsewhere.path().join("x/y"), &known, &sequence("a"), false).unwrap();
+    assert_eq!(made, Added::NewSet, "the folders above are made");
     let file = add_to_set(&place.join("fabric.toml"), &known, &sequence("a"), true).unwrap_err();
     assert!(file.to_string().ends_with("folder: found something else, expected a set's folder, or nothing"));
     assert_eq!(read_set(&place).unwrap().sequences.len(), 2);
