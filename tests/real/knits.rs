@@ -17,10 +17,11 @@
 //! beside it. The narrowing (pins across, at the largest strain) is outside these models and only printed.
 
 use cloth_fit::frame::{MeasurementSet, Sequence};
+use cloth_fit::prediction::predict;
 use cloth_fit::report::{ForceRow, SequenceReport};
 use cloth_fit::stage::{Settings, Watch, stretch};
 use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
-use cloth_sim::material::{Component, Model};
+use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::{data, weightless};
 use std::fs::{read_to_string, write};
 use std::path::Path;
@@ -156,7 +157,8 @@ fn predicted(model: Model) -> usize {
         let unknown = weightless(&knit.name, vec![fourth, fifth]);
         let report = stretch::fit(&known, component, &settings, &mut Watch::default()).unwrap().unwrap();
         assert!(report.converged && report.dropped.is_empty());
-        let prediction = stretch::predict(&unknown, component, &report.curve.curve, &settings).unwrap();
+        let curves = Curves::from_iter([(component, report.curve.curve.clone())]);
+        let prediction = predict(&unknown, &[stretch::kind_of(component)], &curves, &settings).unwrap();
         assert!(prediction.dropped.is_empty() && report.dropped.is_empty());
         let predictions = prediction.sequences;
 
@@ -170,9 +172,10 @@ fn predicted(model: Model) -> usize {
             let measured = knit.at_strains(video, |row| row.measured);
             let simulated = knit.at_strains(video, |row| row.simulated);
             let (error, repeat) = (rms(&measured, &simulated), rms(&measured, &mean));
-            [error, video.force_rms, repeat].map(|rms| percent(video, rms))
+            [error, video.force_rms.unwrap(), repeat].map(|rms| percent(video, rms))
         });
-        let fit: Vec<f64> = report.sequences.iter().map(|video| percent(video, video.force_rms)).collect();
+        let fit: Vec<f64> =
+            report.sequences.iter().map(|video| percent(video, video.force_rms.unwrap())).collect();
         println!(
             "| {:21} | {} | {:4.1} | {:4.1} | {:4.1} | {:4.1} | {:4.1} | {:4.1} | {:4.1} | {:.2} |",
             knit.name,

@@ -59,7 +59,7 @@ fn import(fabric: &str, strip: &str, direction: Direction) -> Sequence {
 fn residual(set: &MeasurementSet, component: Component, settings: &Settings) -> f64 {
     let report = stretch::fit(set, component, settings, &mut Watch::default()).unwrap().unwrap();
     let StageReport { sequences, scatter, .. } = &report;
-    let share = sequences[0].force_rms / sequences[0].force_largest;
+    let share = sequences[0].force_rms.unwrap() / sequences[0].force_largest;
     println!(
         "| {:19} | {:12} | {:15} | {:2} | {:5.2} | {:6.3} | {:6.4} | {:4} | {:5.1} |",
         set.fabric.name,

@@ -33,7 +33,7 @@ fn five_points_find_the_stress_of_wool() {
     let settings = Settings { model: Model::Stvk, ..Settings::default() };
     let report =
         stretch::fit(&set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap();
-    let residual = report.sequences[0].force_rms / report.sequences[0].force_largest;
+    let residual = report.sequences[0].force_rms.unwrap() / report.sequences[0].force_largest;
 
     let (mut difference, mut sum) = (0.0, 0.0);
     for line in read_to_string(path).expect(SHAPE).lines().skip(1) {

@@ -24,7 +24,7 @@ pub fn write_plots(folder: &Path, stages: &[StageReport]) -> Result<()> {
     let plots = folder.join("plots");
     std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
     for stage in stages {
-        let name = |what: &str| plots.join(format!("{}-{what}.svg", stage.component));
+        let name = |what: &str| plots.join(format!("{}-{what}.svg", stage.components[0]));
         // Drawing into memory cannot fail but for a figure of a curve without extent; then there is none.
         if let Ok(figure) = stress::draw(stage) {
             write_file(&name("stress"), figure.as_bytes())?;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// The iterations of a stage, level by level.
 pub fn iterations(stage: &StageReport) -> String {
-    let mut text = format!("{}, {}\n", stage.component, stage.model);
+    let mut text = format!("{}, {}\n", stage.name(), stage.model);
     let _ = writeln!(text, "  points  iteration   rms [N]     gain      step    radius  kept");
     for level in &stage.levels {
         if level.iterations.is_empty() {
@@ -82,8 +82,8 @@ pub fn residuals(stages: &[StageReport]) -> String {
             s.frames,
             s.at_rest + dropped,
             format!("{}x{}", s.nodes[0], s.nodes[1]),
-            s.force_rms,
-            100.0 * s.force_rms / s.force_largest.max(f64::MIN_POSITIVE),
+            s.force_rms.unwrap_or(0.0),
+            100.0 * s.force_rms.unwrap_or(0.0) / s.force_largest.max(f64::MIN_POSITIVE),
             branch(s.hysteresis.map(|h| h.loading)),
             branch(s.hysteresis.map(|h| h.unloading)),
         );
@@ -146,5 +146,5 @@ pub fn verdict(stage: &StageReport) -> String {
         }
         None => "too few frames to judge all of the curve by: measure more".into(),
     };
-    format!("{}: {state}: {}, and {end}; {limit}; {next}.{}", stage.component, stage.growth, oddities(stage))
+    format!("{}: {state}: {}, and {end}; {limit}; {next}.{}", stage.name(), stage.growth, oddities(stage))
 }

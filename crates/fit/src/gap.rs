@@ -13,38 +13,39 @@
 use crate::gauss_newton::Domain;
 use crate::least_squares::{LeastSquares, Smoothing};
 use crate::replica::Replica;
+use crate::simulation::parameter_columns;
 use cloth_sim::cloth::ForceScale;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Control values at the curve's strains that balance the measured forces on the blended shapes best.
 pub fn start(
     replicas: &[Replica],
-    component: Component,
+    fitted: &[Component],
     curve: &StiffnessCurve,
     known: &Curves,
     domain: &Domain,
 ) -> DVector<f64> {
     let points = curve.len();
     let mut curves = known.clone();
-    curves.set(component, curve.clone());
+    fitted.iter().for_each(|&component| curves.set(component, curve.clone()));
     let (mut rows, mut target): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     for replica in replicas {
-        let cloth = &replica.cloth;
-        let mut gradient = vec![0.0; 3 * cloth.nodes()];
-        let mut columns = Vec::new();
         for frame in &replica.frames {
+            let cloth = replica.cloth(frame);
+            let mut gradient = vec![0.0; 3 * cloth.nodes()];
             cloth.gradient(known, &frame.start, &mut gradient, &mut ForceScale::new(cloth.nodes()));
-            cloth.parameter_gradient(&curves, component, &frame.start, &mut columns);
+            let columns = parameter_columns(cloth, &curves, &[fitted.to_vec()], &frame.start);
             for force in &frame.forces {
                 let work = |column: &[f64]| -> f64 {
-                    let nodes = column.chunks_exact(3).zip(&replica.fields[force.clip]);
-                    nodes
-                        .map(|(g, weight)| weight * (0..3).map(|i| g[i] * force.direction[i]).sum::<f64>())
-                        .sum()
+                    let of_group = |(group, vector): &(usize, Vector3<f64>)| -> f64 {
+                        let nodes = column.chunks_exact(3).zip(&replica.fields[*group]);
+                        nodes.map(|(g, weight)| weight * Vector3::from_column_slice(g).dot(vector)).sum()
+                    };
+                    force.parts.iter().map(of_group).sum()
                 };
-                rows.extend(columns.chunks_exact(gradient.len()).map(work));
+                rows.extend(columns.iter().map(|column| work(column)));
                 target.push(force.force - work(&gradient));
             }
         }

@@ -117,7 +117,7 @@ pub struct Provenance {
 impl MaterialFile {
     /// Collects what the stages of one model found.
     pub fn new(set: &MeasurementSet, settings: &Settings, stages: &[StageReport]) -> Self {
-        let entry = |component| match stages.iter().find(|stage| stage.component == component) {
+        let entry = |component| match stages.iter().find(|stage| stage.components.contains(&component)) {
             Some(stage) => CurveEntry::new(stage),
             None => CurveEntry::unobserved(),
         };
@@ -228,7 +228,7 @@ impl ResidualEntry {
             sequence: sequence.name.clone(),
             kind: sequence.kind,
             frames: sequence.frames,
-            rms_force_n: sequence.force_rms,
+            rms_force_n: sequence.force_rms.unwrap_or(0.0),
             largest_force_n: sequence.force_largest,
             rms_position_m: sequence.position_rms,
             loading_stiffness: sequence.hysteresis.map(|h| h.loading),

@@ -7,7 +7,7 @@
 
 use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::report::Level;
-use crate::simulation::Simulation;
+use crate::simulation::{Objective, Simulation};
 use crate::stage::{Constraints, Event, Settings, Watch};
 use crate::uncertainty::Covariance;
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
@@ -48,13 +48,15 @@ pub fn grow(
     lowest_tangent: f64,
     watch: &mut Watch<'_>,
 ) -> Result<Growth> {
-    let clock = Instant::now();
-    let spent_before = watch.meter.read();
     let measurements = simulation.measurements() as f64;
     // A curve with as many points as there are frames meets them all and says nothing; without a known noise one frame
     // more is needed to judge it by.
     let spare = usize::from(!simulation.noise_is_known());
-    let most = settings.points.min(simulation.frames().count().saturating_sub(spare)).max(1);
+    let carriers = match simulation.task().objective {
+        Objective::Forces => simulation.settled().count(),
+        Objective::Positions => simulation.measurements(),
+    };
+    let most = settings.most_points().min(carriers.saturating_sub(spare)).max(1);
     let unit = simulation.unit();
     let mut levels = Vec::new();
     let mut kept: Option<(StiffnessCurve, Outcome, Domain, f64)> = None;
@@ -68,24 +70,10 @@ pub fn grow(
     let mut tries = 0;
     loop {
         let points = curve.len();
-        (watch.observe)(Event::Level { component: simulation.component(), points });
-        simulation.set_curve(curve.clone());
-        let domain = domain(&curve, settings.constraints, lowest_tangent)?;
-        let start = DVector::from_column_slice(curve.stiffnesses());
-        let mut observe = |iteration: &Iteration| {
-            let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
-            let factorisations = watch.meter.read().since(&spent_before).factorisations;
-            let seconds = clock.elapsed().as_secs_f64();
-            (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
-        };
-        let outcome = match minimise(simulation, &start, &domain, &settings.outer, &mut observe) {
-            Ok(outcome) => outcome,
-            Err(never) => match never {},
-        };
-        let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
+        let (outcome, domain, level) = fit_level(simulation, &curve, settings, lowest_tangent, watch)?;
+        let rms = level.rms;
+        levels.push(level);
         curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
-        let (status, iterations) = (outcome.status.to_string(), outcome.iterations.clone());
-        levels.push(Level { points, rms, status, iterations });
         let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
         let all = points >= most;
         let best = match kept {
@@ -100,6 +88,9 @@ pub fn grow(
         };
         if all || tries == TRIES {
             let stopped = match tries {
+                0 if settings.variant.is_linear() => {
+                    "one stiffness is all that a linear variant has".to_string()
+                }
                 0 if points < settings.points => {
                     format!("the frames carry no more than {points} control points")
                 }
@@ -113,9 +104,57 @@ pub fn grow(
             return Ok(Growth { curve, outcome, domain, levels, stopped });
         }
         kept = Some(best);
-        let visited = simulation.visited()[1].max(f64::MIN_POSITIVE);
-        curve = curve.resampled(next_points(points, most), visited)?;
+        curve = curve.resampled(next_points(points, most), simulation.reach())?;
     }
+}
+
+/// Fits again with as many control points as the simulation's curve has, spread over what is visited now.
+///
+/// # Errors
+/// Control points that make no curve.
+pub fn refit(
+    simulation: &mut Simulation<'_>,
+    settings: &Settings,
+    lowest_tangent: f64,
+    watch: &mut Watch<'_>,
+) -> Result<Growth> {
+    let points = simulation.curve().len();
+    let start = simulation.curve().resampled(points, simulation.reach())?;
+    let (outcome, domain, level) = fit_level(simulation, &start, settings, lowest_tangent, watch)?;
+    let curve = start.with_stiffnesses(outcome.point.iter().copied().collect())?;
+    let stopped = format!("all {points} control points of the pass before are fitted again");
+    Ok(Growth { curve, outcome, domain, levels: vec![level], stopped })
+}
+
+/// One level: a fit with a fixed number of control points.
+fn fit_level(
+    simulation: &mut Simulation<'_>,
+    curve: &StiffnessCurve,
+    settings: &Settings,
+    lowest_tangent: f64,
+    watch: &mut Watch<'_>,
+) -> Result<(Outcome, Domain, Level)> {
+    let clock = Instant::now();
+    let spent_before = watch.meter.read();
+    let points = curve.len();
+    let [unit, measurements] = [simulation.unit(), simulation.measurements() as f64];
+    (watch.observe)(Event::Level { component: simulation.task().fitted[0], points });
+    simulation.set_curve(curve.clone());
+    let domain = domain(curve, settings.constraints, lowest_tangent)?;
+    let start = DVector::from_column_slice(curve.stiffnesses());
+    let mut observe = |iteration: &Iteration| {
+        let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
+        let factorisations = watch.meter.read().since(&spent_before).factorisations;
+        let seconds = clock.elapsed().as_secs_f64();
+        (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
+    };
+    let outcome = match minimise(simulation, &start, &domain, &settings.outer, &mut observe) {
+        Ok(outcome) => outcome,
+        Err(never) => match never {},
+    };
+    let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
+    let (status, iterations) = (outcome.status.to_string(), outcome.iterations.clone());
+    Ok((outcome, domain, Level { points, rms, status, iterations }))
 }
 
 /// One, two, three, five, nine …: every segment is halved, up to the most that is wanted.

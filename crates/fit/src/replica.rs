@@ -1,21 +1,48 @@
-//! The simulated replica of a measured sequence: a cloth held by the measured clips, and per frame where they are, what
-//! they were pulled with, and a shape to start from.
+//! The simulated replica of a measured sequence: a cloth held as the measured one was, and per frame where it is held,
+//! what was measured, and a shape to start from.
 //!
 //! Source: Miguel et al. 2012, §5.1. What is held, which frames are used and how shapes are blended: docs/model.md.
 
+mod blend;
+mod clips;
+mod table;
+
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Kind, Phase, Sequence};
+use crate::frame::{Kind, Phase, Sequence};
 use crate::specimen::Specimen;
+use blend::Blend;
+use clips::Grip;
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Model};
-use nalgebra::{Vector2, Vector3};
+use cloth_sim::mesh::Diagonals;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use table::{Lines, Overhang};
 
 /// Largest strain that flattening the clips' motion into the plane may change before the replica moves in space.
 const FLATTENING_STRAIN: f64 = 1e-5;
 
 /// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
 const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
+
+/// What replicas are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// Which membrane and bending.
+    pub model: Model,
+    /// The components that store energy.
+    pub components: Vec<Component>,
+    /// kg/m².
+    pub areal_density: f64,
+    /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
+    pub nodes: Option<[usize; 2]>,
+    /// How cells are split.
+    pub diagonals: Diagonals,
+    /// All motion stays in the plane, and weight across it is left out: for parts without bending, which in space would
+    /// crumple where they are pressed together.
+    pub flat: bool,
+}
 
 /// A measured sequence made ready for simulation; all in the specimen's own frame.
 #[derive(Debug)]
@@ -26,19 +53,27 @@ pub struct Replica {
     pub kind: Kind,
     /// The grid.
     pub specimen: Specimen,
-    /// The cloth.
-    pub cloth: Cloth,
-    /// Per clip a weight a node: 1 at its own nodes, 0 at the other clips', harmonic between. It blends the clips'
-    /// motions into a shape, and is the virtual displacement under which that clip alone does work.
+    /// The cloth, once for every set of nodes that some frame holds.
+    pub cloths: Vec<Cloth>,
+    /// Per group of held nodes a weight a node: 1 at its own nodes, 0 at the others', harmonic between. It is the virtual
+    /// displacement under which that group alone does work. Empty on a table.
     pub fields: Vec<Vec<f64>>,
     /// The frames that are used.
     pub frames: Vec<ReplicaFrame>,
-    /// How many frames of the sequence were left out because nothing was stretched there, or no force was measured.
+    /// How many frames of the sequence were left out because nothing happens there, or nothing was measured.
     pub frames_at_rest: usize,
     /// Two unknowns a node.
     pub planar: bool,
     /// Standard deviation of a force component, N, where known.
     pub force_noise: Option<f64>,
+    /// Standard deviation of a vertex coordinate, m, where known.
+    pub position_noise: Option<f64>,
+    /// Weight per area, N/m².
+    pub weight: Vector3<f64>,
+    /// The lines along a table's edge.
+    lines: Option<Lines>,
+    /// Per node: noise of its coordinates as a share of a vertex's, since a node between vertices sees their mean.
+    pub spread: Vec<f64>,
 }
 
 /// One frame of a replica.
@@ -46,11 +81,15 @@ pub struct Replica {
 pub struct ReplicaFrame {
     /// Index in the sequence.
     pub index: usize,
+    /// Index of its cloth.
+    pub cloth: usize,
     /// Loading or unloading; measured, or from the extension.
     pub phase: Phase,
-    /// Mean relative change of distance between the clips.
+    /// How far the test went: mean relative change of distance between the clips; the effective shear angle, rad, where
+    /// bars shear; the length that hangs over a table's edge, m.
     pub extension: f64,
-    /// A state to start from, 3 stacked coordinates a node, m: clips in place, the cloth blended between them.
+    /// A state to start from, 3 stacked coordinates a node, m: what is held in place, the rest blended between clips, or
+    /// where it was seen, smoothed, off a table.
     pub start: Vec<f64>,
     /// Where the nodes were seen, 3 stacked coordinates a node, m; `None` = no shape measured, NaN = this node not.
     pub observed: Option<Vec<f64>>,
@@ -59,86 +98,238 @@ pub struct ReplicaFrame {
 }
 
 /// One measured component of the force that cords exert on a clip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ForceComponent {
     /// Index of the clip.
     pub clip: usize,
     /// Unit direction.
     pub direction: Vector3<f64>,
+    /// The simulated component is Σ force of a group of held nodes · this vector.
+    pub parts: Vec<(usize, Vector3<f64>)>,
     /// What the cords pull with along it, less the clip's weight: what the cloth must balance, N.
     pub force: f64,
     /// What was measured along it, N.
     pub measured: f64,
 }
 
+impl ForceComponent {
+    /// The component, given the force of every group of held nodes.
+    pub fn of(&self, groups: &[Vector3<f64>]) -> f64 {
+        self.parts.iter().map(|(group, vector)| groups[*group].dot(vector)).sum()
+    }
+}
+
 impl Replica {
-    /// Makes the replica of a sequence held by clips.
+    /// Makes the replica of a sequence.
     ///
     /// # Errors
-    /// A rest mesh that is no rectangle; no clip; clips that claim the same node and disagree; no frame in which
-    /// anything is stretched or measured; springs in long cells; what the mechanics refuse.
-    pub fn new(
-        sequence: &Sequence,
-        specimen: Specimen,
-        model: Model,
-        components: &[Component],
-        areal_density: f64,
-    ) -> Result<Self> {
-        check_cells(sequence, &specimen, model)?;
-        let clamped = clamped_nodes(sequence, &specimen)?;
-        let blend = Blend::new(&specimen, &clamped);
+    /// A rest mesh that is no rectangle; neither clips nor a table; clips that claim the same node and disagree; no frame in
+    /// which anything happens or is measured; springs in long cells; what the mechanics refuse.
+    pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
+        let specimen = Specimen::new(sequence, parts.nodes, parts.diagonals)?;
+        check_cells(sequence, &specimen, parts.model)?;
         let gravity = specimen.turn(&sequence.gravity);
         // A component of gravity that rounding left after turning is none.
-        let gravity = gravity.map(|g| if g.abs() <= 1e-9 * gravity.norm() { 0.0 } else { g });
-        let starts: Vec<Vec<f64>> =
-            sequence.frames.iter().map(|frame| blend.shape(&specimen, frame)).collect();
-        let planar = gravity.z == 0.0 && starts.iter().all(|x| is_planar(x, &clamped, &specimen));
-        let held: Vec<Held> = clamped
+        let mut gravity = gravity.map(|g| if g.abs() <= 1e-9 * gravity.norm() { 0.0 } else { g });
+        if parts.flat {
+            gravity.z = 0.0;
+        }
+        let observed = |positions: &Vec<Vector3<f64>>| -> Vec<f64> {
+            let places = specimen.samples.iter().map(|s| s.interpolate(&sequence.mesh, positions));
+            places.map(|p| specimen.place(&p)).flat_map(|p| [p.x, p.y, p.z]).collect()
+        };
+        let shapes = sequence.frames.iter().map(|frame| frame.positions.as_ref().map(observed)).collect();
+        let noise = sequence.noise;
+        let mut replica = Self {
+            name: sequence.name.clone(),
+            kind: sequence.kind,
+            cloths: Vec::new(),
+            fields: Vec::new(),
+            frames: Vec::new(),
+            frames_at_rest: 0,
+            planar: false,
+            weight: gravity * parts.areal_density,
+            lines: None,
+            force_noise: noise.and_then(|noise| noise.force_n),
+            position_noise: noise.and_then(|noise| noise.position_m),
+            spread: specimen
+                .samples
+                .iter()
+                .map(|s| s.weights.iter().map(|w| w * w).sum::<f64>().sqrt())
+                .collect(),
+            specimen,
+        };
+        match (sequence.clips.is_empty(), sequence.table) {
+            (false, _) => replica.hold_by_clips(sequence, parts, gravity, shapes)?,
+            (true, Some(_)) => replica.lay_on_table(sequence, parts, gravity, shapes)?,
+            (true, None) => {
+                return Err(bad_geometry(
+                    sequence,
+                    "no clip and no table".into(),
+                    "a sequence held by clips, or pushed over the edge of a table",
+                ));
+            }
+        }
+        if replica.frames.is_empty() {
+            return Err(bad_geometry(
+                sequence,
+                "no frame in which anything is deformed and measured".into(),
+                "clips that are apart and their forces (clips.csv, forces.csv), or shapes with an overhang (positions.npy)",
+            ));
+        }
+        replica.frames_at_rest = sequence.frames.len() - replica.frames.len();
+        Ok(replica)
+    }
+
+    /// The cloth of a frame.
+    pub fn cloth(&self, frame: &ReplicaFrame) -> &Cloth {
+        &self.cloths[frame.cloth]
+    }
+
+    /// Flexural rigidity by Peirce's formula from a frame's overhang, N·m, and a typical curvature there, 1/m; `None` where
+    /// nothing hangs.
+    pub fn peirce(&self, frame: &ReplicaFrame) -> Option<[f64; 2]> {
+        let chord = self.lines.as_ref()?.chord(&frame.start)?;
+        let weight = self.weight.norm();
+        let drop = chord.dot(&self.weight) / weight;
+        let angle = (drop / chord.norm()).asin().clamp(0.01, 1.5);
+        let length = frame.extension;
+        let rigidity = weight * length.powi(3) * (0.5 * angle).cos() / (8.0 * angle.tan());
+        Some([rigidity, (2.0 * angle / length).max(f64::MIN_POSITIVE)])
+    }
+
+    /// True if a sheet between clips was seen to leave its plane, and may do so.
+    pub fn is_buckled(&self, frame: &ReplicaFrame) -> bool {
+        let seen = frame.observed.as_ref().is_some_and(|x| !seen_flat(x, self.position_noise));
+        seen && !self.planar && self.lines.is_none()
+    }
+
+    fn hold_by_clips(
+        &mut self,
+        sequence: &Sequence,
+        parts: &Parts,
+        gravity: Vector3<f64>,
+        shapes: Vec<Option<Vec<f64>>>,
+    ) -> Result<()> {
+        let specimen = &self.specimen;
+        let grip = Grip::new(sequence, specimen)?;
+        let blend = Blend::new(&specimen.mesh, grip.group_of.iter().map(Option::is_some).collect());
+        let mut starts: Vec<Vec<f64>> = sequence
+            .frames
+            .iter()
+            .map(|frame| blend.shape(&specimen.mesh, |node| grip.place(specimen, frame, node)))
+            .collect();
+        let bends = parts.components.iter().any(|component| component.is_bending());
+        self.planar = parts.flat
+            || gravity.z == 0.0
+                && starts.iter().all(|x| is_planar(x, &grip.group_of, specimen))
+                && !(bends && shapes.iter().flatten().any(|x| !seen_flat(x, self.position_noise)));
+        if parts.flat {
+            starts.iter_mut().for_each(|x| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 0.0));
+        }
+        let held = grip
+            .group_of
             .iter()
             .enumerate()
-            .filter_map(|(node, clip)| clip.map(|clip| Held { node, clip: Some(clip) }))
+            .filter_map(|(node, group)| Some(Held { node, clip: Some((*group)?) }));
+        self.cloths.push(cloth(sequence, parts, specimen, gravity, &held.collect::<Vec<_>>(), self.planar)?);
+        self.fields = (0..grip.groups.len())
+            .map(|group| {
+                let own = |holder: &Option<usize>| if *holder == Some(group) { 1.0 } else { 0.0 };
+                let mut field: Vec<f64> = grip.group_of.iter().map(own).collect();
+                blend.extend(&mut field);
+                field
+            })
             .collect();
-        let problem =
-            Problem { mesh: &specimen.mesh, model, components, areal_density, gravity, held: &held, planar };
-        let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
-        let cloth = Cloth::new(&problem).map_err(mechanics)?;
-        let extensions: Vec<f64> = starts.iter().map(|x| blend.extension(&specimen, x)).collect();
+        let extensions: Vec<f64> =
+            starts.iter().map(|x| grip.extension(sequence.kind, specimen, x)).collect();
         let largest = extensions.iter().fold(0.0f64, |m, &e| m.max(e));
         // A clip bears its own weight, and that of the cloth inside it.
-        let clips = sequence.clips.iter().zip(&specimen.gripped);
-        let weights: Vec<Vector3<f64>> =
-            clips.map(|(clip, gripped)| gravity * (clip.mass_kg + areal_density * gripped)).collect();
-        let mut frames = Vec::new();
-        for (index, (frame, start)) in sequence.frames.iter().zip(starts).enumerate() {
+        let weights: Vec<Vector3<f64>> = sequence
+            .clips
+            .iter()
+            .zip(&specimen.gripped)
+            .map(|(clip, gripped)| gravity * (clip.mass_kg + parts.areal_density * gripped))
+            .collect();
+        for (index, ((frame, start), observed)) in sequence.frames.iter().zip(starts).zip(shapes).enumerate()
+        {
             // A sheet without shear that is not stretched is singular: such a frame carries no information.
             if extensions[index] <= 1e-3 * largest {
                 continue;
             }
-            let forces = force_components(sequence, frame, &specimen, &weights, planar);
+            let forces = grip.forces(sequence, frame, specimen, &weights, self.planar);
             if forces.is_empty() {
                 continue;
             }
             let phase = frame.phase.unwrap_or_else(|| phase_of(&extensions, index));
-            let observed = frame.positions.as_ref().map(|positions| observed(sequence, &specimen, positions));
-            frames.push(ReplicaFrame { index, phase, extension: extensions[index], start, observed, forces });
+            let extension = extensions[index];
+            self.frames.push(ReplicaFrame { index, cloth: 0, phase, extension, start, observed, forces });
         }
-        if frames.is_empty() {
-            return Err(Error::Geometry {
-                sequence: sequence.name.clone(),
-                found: "no frame in which the clips are apart and their force is measured".into(),
-                expected: "clip poses and clip forces of a stretched specimen (clips.csv, forces.csv)".into(),
-            });
-        }
-        let frames_at_rest = sequence.frames.len() - frames.len();
-        let force_noise = sequence.noise.and_then(|noise| noise.force_n);
-        let (name, kind, fields) = (sequence.name.clone(), sequence.kind, blend.weights);
-        Ok(Self { name, kind, specimen, cloth, fields, frames, frames_at_rest, planar, force_noise })
+        Ok(())
     }
 
-    /// Number of measured force components over all frames.
-    pub fn observations(&self) -> usize {
-        self.frames.iter().map(|frame| frame.forces.len()).sum()
+    fn lay_on_table(
+        &mut self,
+        sequence: &Sequence,
+        parts: &Parts,
+        gravity: Vector3<f64>,
+        shapes: Vec<Option<Vec<f64>>>,
+    ) -> Result<()> {
+        let lines = Lines::new(sequence, &self.specimen, &shapes)?;
+        let overhangs: Vec<Option<Overhang>> = shapes
+            .iter()
+            .map(|shape| shape.as_ref().and_then(|shape| lines.overhang(&self.specimen, shape)))
+            .collect();
+        let lengths: Vec<f64> =
+            overhangs.iter().map(|overhang| overhang.as_ref().map_or(0.0, |o| o.length)).collect();
+        let mut cloth_of: BTreeMap<usize, usize> = BTreeMap::new();
+        for (index, ((frame, overhang), observed)) in
+            sequence.frames.iter().zip(overhangs).zip(shapes).enumerate()
+        {
+            let Some(Overhang { held, length, smooth }) = overhang else { continue };
+            let cloth = match cloth_of.get(&held) {
+                Some(&known) => known,
+                None => {
+                    let nodes: Vec<Held> = lines.first(held).map(|node| Held { node, clip: None }).collect();
+                    self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, false)?);
+                    cloth_of.insert(held, self.cloths.len() - 1);
+                    self.cloths.len() - 1
+                }
+            };
+            let phase = frame.phase.unwrap_or_else(|| phase_of(&lengths, index));
+            let (extension, start, forces) = (length, smooth, Vec::new());
+            self.frames.push(ReplicaFrame { index, cloth, phase, extension, start, observed, forces });
+        }
+        self.lines = Some(lines);
+        Ok(())
     }
+}
+
+fn cloth(
+    sequence: &Sequence,
+    parts: &Parts,
+    specimen: &Specimen,
+    gravity: Vector3<f64>,
+    held: &[Held],
+    planar: bool,
+) -> Result<Cloth> {
+    // What stays in its plane does not bend.
+    let bends = |component: &Component| component.is_bending() && planar;
+    let components: Vec<Component> = parts.components.iter().copied().filter(|c| !bends(c)).collect();
+    Cloth::new(&Problem {
+        mesh: &specimen.mesh,
+        model: parts.model,
+        components: &components,
+        areal_density: parts.areal_density,
+        gravity,
+        held,
+        planar,
+    })
+    .map_err(|source| Error::Mechanics { context: sequence.name.clone(), source })
+}
+
+fn bad_geometry(sequence: &Sequence, found: String, expected: &str) -> Error {
+    Error::Geometry { sequence: sequence.name.clone(), found, expected: expected.into() }
 }
 
 /// Refuses cells in which springs would not be what they are meant for.
@@ -147,190 +338,28 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
     if model != Model::Springs || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
         return Ok(());
     }
-    Err(Error::Geometry {
-        sequence: sequence.name.clone(),
-        found: format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
-        expected: "cells at most 2.4 times as long as wide (choose the nodes by the specimen's sides)".into(),
-    })
-}
-
-/// Which clip holds each node: what lies in the bounding box of the clip's vertices, give or take half a cell.
-fn clamped_nodes(sequence: &Sequence, specimen: &Specimen) -> Result<Vec<Option<usize>>> {
-    let bad = |found: String, expected: &str| Error::Geometry {
-        sequence: sequence.name.clone(),
-        found,
-        expected: expected.into(),
-    };
-    if sequence.clips.is_empty() {
-        return Err(bad("no clip".into(), "a sequence held by clips"));
-    }
-    let [dx, dy] = specimen.grid.cell();
-    let margin = Vector2::new(dx, dy) * (0.5 * (1.0 + 1e-9));
-    let mut clamped: Vec<Option<usize>> = vec![None; specimen.mesh.len()];
-    for (clip, gripped) in sequence.clips.iter().enumerate() {
-        let places = gripped.vertices.iter().map(|&v| specimen.place(&sequence.mesh.positions[v]).xy());
-        let (low, high) = places
-            .fold((Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)), |(low, high), p| {
-                (low.inf(&p), high.sup(&p))
-            });
-        for (node, position) in specimen.mesh.positions.iter().enumerate() {
-            let p = position.xy();
-            let inside = p >= low - margin && p <= high + margin;
-            if !inside {
-                continue;
-            }
-            match clamped[node] {
-                None => clamped[node] = Some(clip),
-                Some(other) => {
-                    let world = specimen.rest_in_world(node);
-                    let apart =
-                        |frame: &Frame| (place(frame, clip, &world) - place(frame, other, &world)).norm();
-                    if let Some(frame) = sequence.frames.iter().position(|frame| apart(frame) > 1e-6) {
-                        return Err(bad(
-                            format!(
-                                "clips {} and {} both hold a node and put it {:.2e} m apart in frame {frame}",
-                                sequence.clips[other].name,
-                                gripped.name,
-                                apart(&sequence.frames[frame])
-                            ),
-                            "clips that do not overlap (they grip what lies within half a simulation cell)",
-                        ));
-                    }
-                }
-            }
-        }
-    }
-    match (0..sequence.clips.len()).find(|&clip| !clamped.contains(&Some(clip))) {
-        Some(clip) => Err(bad(
-            format!("clip {} holds no node of its own", sequence.clips[clip].name),
-            "clips that do not overlap, on the specimen",
-        )),
-        None => Ok(clamped),
-    }
-}
-
-/// Where a clip takes a rest point, in world coordinates.
-fn place(frame: &Frame, clip: usize, rest: &Vector3<f64>) -> Vector3<f64> {
-    let pose = &frame.poses[clip];
-    pose.rotation * rest + pose.translation.vector
-}
-
-/// Blends the clips' rigid motions over the cloth: every clip has a weight at every node, 1 at its own nodes, 0 at the
-/// other clips', harmonic between. Between two bars that is linear.
-struct Blend {
-    /// Per clip, a weight a node.
-    weights: Vec<Vec<f64>>,
-}
-
-impl Blend {
-    fn new(specimen: &Specimen, clamped: &[Option<usize>]) -> Self {
-        let clips = clamped.iter().flatten().max().map_or(0, |last| last + 1);
-        let mut weights: Vec<Vec<f64>> = (0..clips).map(|clip| harmonic(specimen, clamped, clip)).collect();
-        // They sum to one but for rounding; exactly, so that a rigid motion of all clips stays one.
-        for node in 0..clamped.len() {
-            let sum: f64 = weights.iter().map(|weights| weights[node]).sum();
-            weights.iter_mut().for_each(|weights| weights[node] /= sum);
-        }
-        Self { weights }
-    }
-
-    /// The blended shape of a frame, in the specimen's frame.
-    fn shape(&self, specimen: &Specimen, frame: &Frame) -> Vec<f64> {
-        (0..specimen.mesh.len())
-            .flat_map(|node| {
-                let rest = specimen.rest_in_world(node);
-                let blended = self.weights.iter().enumerate().map(|(clip, weights)| {
-                    // Skipped, not multiplied by zero: at a clip's own nodes the place is exact.
-                    if weights[node] == 0.0 {
-                        Vector3::zeros()
-                    } else {
-                        place(frame, clip, &rest) * weights[node]
-                    }
-                });
-                let p = specimen.place(&blended.sum());
-                [p.x, p.y, p.z]
-            })
-            .collect()
-    }
-
-    /// Mean relative change of distance between the clips' centres.
-    fn extension(&self, specimen: &Specimen, x: &[f64]) -> f64 {
-        let centres = |position: &dyn Fn(usize) -> Vector3<f64>| -> Vec<Vector3<f64>> {
-            let centre = |weights: &Vec<f64>| {
-                let held = (0..weights.len()).filter(|&node| weights[node] == 1.0);
-                held.clone().map(position).sum::<Vector3<f64>>() / held.count() as f64
-            };
-            self.weights.iter().map(centre).collect()
-        };
-        let now = centres(&|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3]));
-        let rest = centres(&|node| specimen.mesh.positions[node]);
-        let mut strains = Vec::new();
-        for a in 0..now.len() {
-            for b in 0..a {
-                strains.push((now[a] - now[b]).norm() / (rest[a] - rest[b]).norm() - 1.0);
-            }
-        }
-        strains.iter().sum::<f64>() / strains.len().max(1) as f64
-    }
-}
-
-/// Solves Laplace's equation on the grid by conjugate gradients: a weight of 1 at a clip's nodes, 0 at the others', nothing
-/// flowing out at the border.
-fn harmonic(specimen: &Specimen, clamped: &[Option<usize>], clip: usize) -> Vec<f64> {
-    let grid = &specimen.grid;
-    let [dx, dy] = grid.cell();
-    // Conductances along the grid's lines; those at the border carry half.
-    let line = |at: usize, count: usize| if at == 0 || at == count - 1 { 0.5 } else { 1.0 };
-    let flow = |weights: &[f64]| -> Vec<f64> {
-        let mut flow = vec![0.0; weights.len()];
-        let mut exchange = |a: usize, b: usize, conductance: f64| {
-            let current = conductance * (weights[a] - weights[b]);
-            flow[a] += current;
-            flow[b] -= current;
-        };
-        for row in 0..grid.rows {
-            for column in 1..grid.columns {
-                let conductance = dy / dx * line(row, grid.rows);
-                exchange(grid.node(column - 1, row), grid.node(column, row), conductance);
-            }
-        }
-        for row in 1..grid.rows {
-            for column in 0..grid.columns {
-                let conductance = dx / dy * line(column, grid.columns);
-                exchange(grid.node(column, row - 1), grid.node(column, row), conductance);
-            }
-        }
-        flow.iter_mut().zip(clamped).filter(|(_, clip)| clip.is_some()).for_each(|(f, _)| *f = 0.0);
-        flow
-    };
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut weights: Vec<f64> =
-        clamped.iter().map(|&holder| if holder == Some(clip) { 1.0 } else { 0.0 }).collect();
-    let mut residual: Vec<f64> = flow(&weights).iter().map(|f| -f).collect();
-    let mut direction = residual.clone();
-    let mut square = dot(&residual, &residual);
-    let enough = 1e-26 * square;
-    // In exact arithmetic as many steps as unknowns would do; rounding may ask for a few more.
-    for _ in 0..4 * weights.len() {
-        if square <= enough {
-            break;
-        }
-        let image = flow(&direction);
-        let length = square / dot(&direction, &image);
-        weights.iter_mut().zip(&direction).for_each(|(w, d)| *w += length * d);
-        residual.iter_mut().zip(&image).for_each(|(r, i)| *r -= length * i);
-        let before = std::mem::replace(&mut square, dot(&residual, &residual));
-        direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + square / before * *d);
-    }
-    weights
+    Err(bad_geometry(
+        sequence,
+        format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
+        "cells at most 2.4 times as long as wide (choose the nodes by the specimen's sides)",
+    ))
 }
 
 /// True if the clips' nodes leave their common plane z = const so little that flattening changes no strain noticeably.
-fn is_planar(x: &[f64], clamped: &[Option<usize>], specimen: &Specimen) -> bool {
-    let heights = (0..clamped.len()).filter(|&node| clamped[node].is_some()).map(|node| x[3 * node + 2]);
+fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool {
+    let heights = (0..group_of.len()).filter(|&node| group_of[node].is_some()).map(|node| x[3 * node + 2]);
     let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
     let side = specimen.grid.width.min(specimen.grid.height);
     0.5 * ((high - low) / side).powi(2) <= FLATTENING_STRAIN
+}
+
+/// True if an observed shape does not leave its plane by more than its noise makes it.
+fn seen_flat(x: &[f64], noise: Option<f64>) -> bool {
+    let heights = || x.iter().skip(2).step_by(3).filter(|z| z.is_finite());
+    let count = heights().count().max(1) as f64;
+    let mean = heights().sum::<f64>() / count;
+    let square = heights().map(|z| (z - mean) * (z - mean)).sum::<f64>() / count;
+    square.sqrt() <= 3.0 * noise.unwrap_or(1e-4)
 }
 
 /// Loading while the extension grows.
@@ -344,44 +373,10 @@ fn phase_of(extensions: &[f64], index: usize) -> Phase {
     }
 }
 
-fn observed(sequence: &Sequence, specimen: &Specimen, positions: &[Vector3<f64>]) -> Vec<f64> {
-    let places = specimen.samples.iter().map(|s| specimen.place(&s.interpolate(&sequence.mesh, positions)));
-    places.flat_map(|p| [p.x, p.y, p.z]).collect()
-}
-
-/// The measured components of a frame: along the load cell, or all the plane's, or all three.
-fn force_components(
-    sequence: &Sequence,
-    frame: &Frame,
-    specimen: &Specimen,
-    weights: &[Vector3<f64>],
-    planar: bool,
-) -> Vec<ForceComponent> {
-    let directions = match sequence.force_direction {
-        Some(direction) => vec![specimen.turn(&direction)],
-        None if planar => vec![Vector3::x(), Vector3::y()],
-        None => vec![Vector3::x(), Vector3::y(), Vector3::z()],
-    };
-    let mut components = Vec::new();
-    for (clip, weight) in weights.iter().enumerate() {
-        let Some(force) = frame.clip_force(clip) else { continue };
-        let force = specimen.turn(&force);
-        // A clip is in balance: cords + its weight = what the cloth pulls with.
-        let balanced = force + weight;
-        components.extend(directions.iter().map(|direction| ForceComponent {
-            clip,
-            direction: *direction,
-            force: balanced.dot(direction),
-            measured: force.dot(direction),
-        }));
-    }
-    components
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cloth_sim::mesh::{Diagonals, Grid};
+    use cloth_sim::mesh::Grid;
 
     #[test]
     fn springs_in_long_cells_are_refused() {
@@ -399,8 +394,15 @@ mod tests {
             frames: Vec::new(),
         };
         let message = |model, nodes| {
-            let specimen = Specimen::new(&sequence, Some(nodes), Diagonals::Forward).unwrap();
-            Replica::new(&sequence, specimen, model, &[Component::StretchWeft], 0.2).unwrap_err().to_string()
+            let parts = Parts {
+                model,
+                components: vec![Component::StretchWeft],
+                areal_density: 0.2,
+                nodes: Some(nodes),
+                diagonals: Diagonals::Forward,
+                flat: false,
+            };
+            Replica::new(&sequence, &parts).unwrap_err().to_string()
         };
         let long = "sequence square: found springs in cells of 8.33e-3 m × 2.50e-2 m";
         assert!(message(Model::Springs, [13, 5]).starts_with(long));

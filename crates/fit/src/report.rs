@@ -2,7 +2,8 @@
 
 use crate::frame::{Kind, Phase};
 use crate::gauss_newton::Iteration;
-use crate::simulation::{Counters, DroppedFrame};
+use crate::simulation::{Counters, DroppedFrame, Objective};
+use crate::stage::Variant;
 use crate::uncertainty::Scatter;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Model};
@@ -11,17 +12,19 @@ use nalgebra::Vector3;
 /// A fitted curve with its uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveReport {
-    /// Which component.
-    pub component: Component,
-    /// The curve.
+    /// The curve, over the model's own strain.
     pub curve: StiffnessCurve,
+    /// False if the measurements do not tell even its scale: then it is no result, and has no file.
+    pub observed: bool,
     /// Standard deviation of each control value; `None` where no frame sees it.
     pub deviations: Vec<Option<f64>>,
     /// Half the 95 % band of each control value; `None` where no frame sees it.
     pub half_bands: Vec<Option<f64>>,
-    /// The strains that the measurement visited: from 0, or from the smallest where that is negative.
+    /// The strains that the measurement visited: from 0, or from the smallest where that is negative; bending: sizes.
     pub visited: [f64; 2],
-    /// 201 rows over the visited range.
+    /// Share of the range of control points that was visited, 0 … 1.
+    pub share_visited: f64,
+    /// 201 rows over the visited range. Bending: over curvature.
     pub samples: Vec<Sample>,
     /// How many directions of the control values the data see.
     pub rank: usize,
@@ -36,13 +39,13 @@ pub struct CurveReport {
 /// One row of a curve file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// Strain.
+    /// Strain; bending: curvature, 1/m.
     pub strain: f64,
-    /// σ/ε, N/m.
+    /// Stress over strain, N/m; bending: flexural rigidity, moment over curvature, N·m.
     pub stiffness: f64,
-    /// σ, N/m.
+    /// Stress, N/m; bending: moment per width, N.
     pub stress: f64,
-    /// 95 % band of the stress, N/m; `None` where no frame sees it.
+    /// 95 % band of the stress or moment; `None` where no frame sees it.
     pub band: Option<[f64; 2]>,
 }
 
@@ -61,14 +64,16 @@ pub struct SequenceReport {
     pub planar: bool,
     /// Columns and rows of nodes.
     pub nodes: [usize; 2],
-    /// Root mean square of measured − simulated over all measured force components, N.
-    pub force_rms: f64,
-    /// Largest measured force component, N.
+    /// Root mean square of measured − simulated over all measured force components, N; `None` = none was measured.
+    pub force_rms: Option<f64>,
+    /// Largest measured force component, N; 0 if none was measured.
     pub force_largest: f64,
     /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
     pub position_rms: Option<f64>,
     /// Frames whose residual stands out from its neighbours', the farthest first: a slip, or a wrong sign.
     pub outliers: Vec<usize>,
+    /// Frames that left an unstable equilibrium: they may have several. Their shapes are not in `position_rms`.
+    pub multi_stable: Vec<usize>,
     /// Measured stiffness on loading and on unloading, as multiples of the curve's.
     pub hysteresis: Option<Hysteresis>,
     /// Every force component of every frame.
@@ -95,7 +100,7 @@ pub struct ForceRow {
     pub clip: usize,
     /// Unit direction of the component, in the specimen's own frame.
     pub direction: Vector3<f64>,
-    /// Mean relative change of distance between the clips.
+    /// How far the test went: see [`ReplicaFrame`](crate::replica::ReplicaFrame::extension).
     pub extension: f64,
     /// Measured, N.
     pub measured: f64,
@@ -108,7 +113,7 @@ pub struct ForceRow {
 pub struct Level {
     /// Control points.
     pub points: usize,
-    /// Root mean square residual, N.
+    /// Root mean square residual, N or m.
     pub rms: f64,
     /// Why it stopped.
     pub status: String,
@@ -116,17 +121,36 @@ pub struct Level {
     pub iterations: Vec<Iteration>,
 }
 
-/// A stage of the fit: one component.
+/// What a stage took as known.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Basis {
+    /// Components fitted before, whose errors the bands carry on.
+    pub carried: Vec<Component>,
+    /// All components whose curves were known.
+    pub known: Vec<Component>,
+    /// Components that nobody measured: a constant stiffness was assumed.
+    pub assumed: Vec<Component>,
+}
+
+/// A stage of the fit: one curve.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct StageReport {
-    /// Which component was fitted.
-    pub component: Component,
+    /// Which components were fitted: one, or weft and warp with a curve in common.
+    pub components: Vec<Component>,
+    /// First or second pass over them.
+    pub pass: usize,
     /// With which model.
     pub model: Model,
+    /// In which variant.
+    pub variant: Variant,
+    /// What was compared.
+    pub objective: Objective,
+    /// What was taken as known.
+    pub basis: Basis,
     /// The curve.
     pub curve: CurveReport,
-    /// Noise and misfit, N.
+    /// Noise and misfit, N or m.
     pub scatter: Scatter,
     /// How each sequence was met.
     pub sequences: Vec<SequenceReport>,
@@ -142,4 +166,12 @@ pub struct StageReport {
     pub counters: Counters,
     /// Wall time, s.
     pub seconds: f64,
+}
+
+impl StageReport {
+    /// The fitted components by name.
+    pub fn name(&self) -> String {
+        let names: Vec<String> = self.components.iter().map(|component| component.to_string()).collect();
+        names.join(" = ")
+    }
 }

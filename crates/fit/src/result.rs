@@ -69,7 +69,7 @@ pub fn write_result(
     let curves = folder.join("curves");
     std::fs::create_dir_all(&curves).map_err(|source| Error::io(&curves, source))?;
     for stage in stages {
-        let file = curves.join(format!("{}.csv", stage.component));
+        let file = curves.join(format!("{}.csv", stage.components[0]));
         write_file(&file, curve_table(&stage.curve).as_bytes())?;
     }
     write_file(&folder.join("residuals.csv"), residual_table(stages).as_bytes())?;
@@ -107,7 +107,7 @@ fn residual_table(stages: &[StageReport]) -> String {
                 "{},{},{},{},{position},{},{},{iterations},{:.3}",
                 s.name,
                 s.kind,
-                s.force_rms,
+                s.force_rms.unwrap_or(0.0),
                 s.force_largest,
                 s.frames,
                 s.at_rest + dropped,

@@ -1,4 +1,5 @@
-//! All frames of one stage in equilibrium under trial curves: residuals of clip forces, and their sensitivities.
+//! All frames of one stage in equilibrium under trial curves: residuals of clip forces or of positions, and their
+//! sensitivities.
 //!
 //! ```text
 //! equilibrium      g(x, k) = 0 at the free nodes                       g = ∇E
@@ -13,6 +14,8 @@
 
 use crate::gauss_newton::{Evaluation, Residuals};
 use crate::replica::{Replica, ReplicaFrame};
+use crate::robust::Robust;
+use cloth_sim::cloth::Cloth;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::{Equilibrium, Settings, Solver, Status};
 use cloth_sim::material::{Component, Curves};
@@ -81,12 +84,23 @@ pub struct DroppedFrame {
     pub status: Status,
 }
 
+/// What a stage compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objective {
+    /// The measured components of clip forces, N.
+    Forces,
+    /// The places of the free nodes that were seen, m.
+    Positions,
+}
+
 /// The equilibrium of one frame at some control values.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct State {
     x: Vec<f64>,
     /// dx/dk: one column of unknowns a control value; empty before the first solve.
     sensitivity: Vec<f64>,
+    /// An unstable equilibrium was met and left: others may exist.
+    escaped: bool,
 }
 
 /// A frame's share of an evaluation.
@@ -95,18 +109,49 @@ struct FrameResult {
     status: Status,
     /// Simulated force along each measured component, N.
     forces: Vec<f64>,
-    /// Its derivatives, component-major.
+    /// What is compared, as simulated.
+    simulated: Vec<f64>,
+    /// Its derivatives, row by row.
     derivatives: Vec<f64>,
 }
+
+/// One frame of a simulation, for those who read it.
+#[derive(Debug, Clone, Copy)]
+pub struct Settled<'s> {
+    /// The sequence's replica.
+    pub replica: &'s Replica,
+    /// The frame.
+    pub frame: &'s ReplicaFrame,
+    /// Its equilibrium, 3 stacked coordinates a node, m.
+    pub x: &'s [f64],
+    /// An unstable equilibrium was met and left on the way: the frame may have several.
+    pub multi_stable: bool,
+}
+
+/// What is simulated, and how.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The components that share the fitted curve.
+    pub fitted: Vec<Component>,
+    /// What is compared.
+    pub objective: Objective,
+    /// The curves of the other components.
+    pub known: Curves,
+    /// How equilibria are found.
+    pub settings: Settings,
+    /// How far a residual counts in full.
+    pub robust: Option<Robust>,
+}
+
+type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
 
 /// A stage's replicas under one unknown curve.
 pub struct Simulation<'a> {
     replicas: &'a [Replica],
-    solvers: Vec<Mutex<Vec<Solver<'a>>>>,
-    component: Component,
+    /// Per replica, per cloth.
+    solvers: Vec<Vec<SolverPool<'a>>>,
+    task: Task,
     curve: StiffnessCurve,
-    known: Curves,
-    settings: Settings,
     /// (replica, frame) of every frame in use.
     frames: Vec<(usize, usize)>,
     states: Vec<State>,
@@ -117,28 +162,19 @@ pub struct Simulation<'a> {
 impl<'a> Simulation<'a> {
     /// Finds the first equilibria, and drops the frames that have none.
     ///
-    /// * `curve` — the component's curve to start from; its strains are the control points that are fitted
-    /// * `known` — the curves of the other components
-    pub fn new(
-        replicas: &'a [Replica],
-        component: Component,
-        curve: StiffnessCurve,
-        known: Curves,
-        settings: Settings,
-        meter: Arc<Meter>,
-    ) -> Self {
+    /// * `curve` — the curve to start from; its strains are the control points that are fitted
+    pub fn new(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
         let frames: Vec<(usize, usize)> = replicas
             .iter()
             .enumerate()
             .flat_map(|(replica, r)| (0..r.frames.len()).map(move |frame| (replica, frame)))
             .collect();
+        let pools = |replica: &Replica| replica.cloths.iter().map(|_| Mutex::default()).collect();
         let mut simulation = Self {
             replicas,
-            solvers: replicas.iter().map(|_| Mutex::new(Vec::new())).collect(),
-            component,
+            solvers: replicas.iter().map(pools).collect(),
+            task,
             curve,
-            known,
-            settings,
             states: Vec::new(),
             frames,
             dropped: Vec::new(),
@@ -156,6 +192,26 @@ impl<'a> Simulation<'a> {
         simulation
     }
 
+    /// Lets residuals above so many times the noise count less; where the noise is not known, above so many times the
+    /// typical residual under the curve as it is (its median, as a standard deviation).
+    pub fn make_robust(&mut self, limit: f64) {
+        let unit = if self.noise_is_known() { 1.0 } else { self.typical_residual() };
+        self.task.robust = (unit > 0.0).then_some(Robust { limit: limit * unit });
+    }
+
+    fn typical_residual(&self) -> f64 {
+        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
+        let mut sizes: Vec<f64> = Vec::new();
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let replica = &self.replicas[replica];
+            let frame = &replica.frames[frame];
+            let measured = measured(replica, frame, self.task.objective).zip(self.scales(replica, frame));
+            sizes.extend(measured.zip(&result.simulated).map(|((m, scale), s)| ((m - s) / scale).abs()));
+        }
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).map_or(0.0, |median| 1.4826 * median)
+    }
+
     /// Goes on with other control points; states stay.
     pub fn set_curve(&mut self, curve: StiffnessCurve) {
         self.curve = curve;
@@ -168,44 +224,73 @@ impl<'a> Simulation<'a> {
         &self.curve
     }
 
-    /// Number of measured force components of all frames in use.
+    /// Number of measurements that are compared, over all frames in use.
     pub fn measurements(&self) -> usize {
-        self.frames().map(|(_, frame, _)| frame.forces.len()).sum()
+        self.settled().map(|s| self.scales(s.replica, s.frame).count()).sum()
     }
 
     /// True if the noise of every sequence is known: residuals then are in units of it.
     pub fn noise_is_known(&self) -> bool {
-        self.replicas.iter().all(|replica| replica.force_noise.is_some())
+        self.replicas.iter().all(|replica| self.noise(replica).is_some())
     }
 
-    /// What turns residuals into newtons: the noise they are in units of (the mean, if sequences differ), or 1.
+    /// What turns residuals into newtons or metres: the noise they are in units of (the mean, if sequences differ), or 1.
     pub fn unit(&self) -> f64 {
-        let scales = self.scales();
-        scales.iter().sum::<f64>() / scales.len() as f64
+        let scales = self.replicas.iter().map(|replica| self.scale(replica));
+        scales.sum::<f64>() / self.replicas.len() as f64
     }
 
-    /// The component that is fitted.
-    pub fn component(&self) -> Component {
-        self.component
+    /// What is simulated, and how.
+    pub fn task(&self) -> &Task {
+        &self.task
     }
 
-    /// What the residuals of each replica are divided by, N.
-    fn scales(&self) -> Vec<f64> {
-        let known = self.noise_is_known();
-        let scale = |replica: &Replica| replica.force_noise.filter(|_| known).unwrap_or(1.0);
-        self.replicas.iter().map(scale).collect()
+    fn noise(&self, replica: &Replica) -> Option<f64> {
+        match self.task.objective {
+            Objective::Forces => replica.force_noise,
+            Objective::Positions => replica.position_noise,
+        }
     }
 
-    /// Indices of residuals that follow one another: one force component of one clip through a sequence.
+    /// What the residuals of a replica are divided by.
+    fn scale(&self, replica: &Replica) -> f64 {
+        self.noise(replica).filter(|_| self.noise_is_known()).unwrap_or(1.0)
+    }
+
+    /// What each measurement of a frame is divided by.
+    fn scales<'s>(&'s self, replica: &'s Replica, frame: &'s ReplicaFrame) -> impl Iterator<Item = f64> + 's {
+        let scale = self.scale(replica);
+        let forces = frame.forces.iter().map(|_| 1.0);
+        let positions = seen_unknowns(replica, frame).map(|(_, coordinate)| replica.spread[coordinate / 3]);
+        let by_forces = self.task.objective == Objective::Forces;
+        forces
+            .filter(move |_| by_forces)
+            .chain(positions.filter(move |_| !by_forces))
+            .map(move |share| share * scale)
+    }
+
+    /// Indices of residuals that follow one another: one force component of one clip through a sequence, or one coordinate
+    /// of one node.
     pub fn tracks(&self) -> Vec<Vec<usize>> {
         let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
         let mut index = 0;
         for &(replica, frame) in &self.frames {
-            let forces = &self.replicas[replica].frames[frame].forces;
-            for (place, force) in forces.iter().enumerate() {
-                let first = forces.iter().position(|other| other.clip == force.clip).unwrap_or(0);
-                tracks.entry((replica, force.clip, place - first)).or_default().push(index);
-                index += 1;
+            let frame = &self.replicas[replica].frames[frame];
+            let forces = &frame.forces;
+            match self.task.objective {
+                Objective::Forces => {
+                    for (place, force) in forces.iter().enumerate() {
+                        let first = forces.iter().position(|other| other.clip == force.clip).unwrap_or(0);
+                        tracks.entry((replica, force.clip, place - first)).or_default().push(index);
+                        index += 1;
+                    }
+                }
+                Objective::Positions => {
+                    for (_, coordinate) in seen_unknowns(&self.replicas[replica], frame) {
+                        tracks.entry((replica, coordinate / 3, coordinate % 3)).or_default().push(index);
+                        index += 1;
+                    }
+                }
             }
         }
         tracks.into_values().collect()
@@ -217,17 +302,20 @@ impl<'a> Simulation<'a> {
     }
 
     /// The frames in use, with their replicas and states.
-    pub fn frames(&self) -> impl Iterator<Item = (&'a Replica, &'a ReplicaFrame, &[f64])> {
+    pub fn settled(&self) -> impl Iterator<Item = Settled<'_>> {
         let replicas = self.replicas;
-        self.frames.iter().zip(&self.states).map(move |(&(replica, frame), state)| {
-            (&replicas[replica], &replicas[replica].frames[frame], &state.x[..])
+        self.frames.iter().zip(&self.states).map(move |(&(replica, frame), state)| Settled {
+            replica: &replicas[replica],
+            frame: &replicas[replica].frames[frame],
+            x: &state.x,
+            multi_stable: state.escaped,
         })
     }
 
     /// Brings all frames to equilibrium under the curve, and returns the simulated forces along the measured components of
     /// each, N. Frames that have none are dropped.
     pub fn settle(&mut self) -> Vec<Vec<f64>> {
-        let results = self.solve_frames(&self.curves(&self.curve), None);
+        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
         let mut forces = Vec::new();
         self.states.clear();
         for ((replica, frame), result) in std::mem::take(&mut self.frames).into_iter().zip(results) {
@@ -244,127 +332,161 @@ impl<'a> Simulation<'a> {
         forces
     }
 
-    /// The 1st and 99th percentile of the component's strains over all states.
+    /// The derivative of everything that is compared with respect to the control values of other curves, in the order of
+    /// their groups; rows and units as those of an evaluation.
+    ///
+    /// * `groups` — components that share a curve, a group each
+    pub fn sensitivity_to(&self, groups: &[Vec<Component>]) -> DMatrix<f64> {
+        let curves = self.curves(&self.curve);
+        let results = self.solve_frames(&curves, groups, None);
+        let columns: usize =
+            groups.iter().map(|group| curves.get(group[0]).map_or(0, StiffnessCurve::len)).sum();
+        let scaled = self.frames.iter().zip(&results).flat_map(|(&(replica, frame), result)| {
+            let replica = &self.replicas[replica];
+            let scales = self.scales(replica, &replica.frames[frame]);
+            let rows = result.derivatives.chunks_exact(columns.max(1));
+            rows.zip(scales).flat_map(|(row, scale)| row.iter().map(move |d| d / scale))
+        });
+        let values: Vec<f64> = scaled.collect();
+        DMatrix::from_row_slice(values.len() / columns.max(1), columns, &values)
+    }
+
+    /// The 1st and 99th percentile of the fitted components' strains over all states; of their size where the curve is odd
+    /// and bends either way alike.
     pub fn visited(&self) -> [f64; 2] {
+        let bends = self.task.fitted.iter().any(|component| component.is_bending());
         let mut strains: Vec<f64> = self
-            .frames()
-            .flat_map(|(replica, _, x)| replica.cloth.strains(self.component, x))
-            .map(|[strain, _]| strain)
+            .settled()
+            .flat_map(|s| {
+                self.task.fitted.iter().flat_map(move |&c| s.replica.cloth(s.frame).strains(c, s.x))
+            })
+            .map(|[strain, _]| if bends { strain.abs() } else { strain })
             .collect();
         strains.sort_by(f64::total_cmp);
         let percentile = |share: f64| {
             let place = share * strains.len().saturating_sub(1) as f64;
             strains.get(place.round() as usize).copied().unwrap_or(0.0)
         };
-        [percentile(0.01), percentile(0.99)]
+        [if bends { 0.0 } else { percentile(0.01) }, percentile(0.99)]
+    }
+
+    /// The largest strain that control points should reach.
+    pub fn reach(&self) -> f64 {
+        let [low, high] = self.visited();
+        let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
+        (if odd { high.max(-low) } else { high }).max(f64::MIN_POSITIVE)
     }
 
     fn curves(&self, curve: &StiffnessCurve) -> Curves {
-        let mut curves = self.known.clone();
-        curves.set(self.component, curve.clone());
+        let mut curves = self.task.known.clone();
+        self.task.fitted.iter().for_each(|&component| curves.set(component, curve.clone()));
         curves
     }
 
     /// Equilibria of all frames; `change` of the control values since the states were found moves them ahead.
-    fn solve_frames(&self, curves: &Curves, change: Option<&DVector<f64>>) -> Vec<FrameResult> {
+    ///
+    /// * `groups` — derivatives are taken with respect to their curves
+    fn solve_frames(
+        &self,
+        curves: &Curves,
+        groups: &[Vec<Component>],
+        change: Option<&DVector<f64>>,
+    ) -> Vec<FrameResult> {
         self.frames
             .par_iter()
             .zip(&self.states)
-            .map(|(&(replica, frame), state)| self.solve_frame(replica, frame, state, curves, change))
+            .map(|(&(replica, frame), state)| {
+                let pool = &self.solvers[replica][self.replicas[replica].frames[frame].cloth];
+                let replica = &self.replicas[replica];
+                self.solve_frame(pool, replica, &replica.frames[frame], state, curves, groups, change)
+            })
             .collect()
     }
 
+    #[expect(clippy::too_many_arguments, reason = "one frame of solve_frames")]
     fn solve_frame(
         &self,
-        replica: usize,
-        frame: usize,
+        pool: &SolverPool<'a>,
+        replica: &'a Replica,
+        frame: &'a ReplicaFrame,
         state: &State,
         curves: &Curves,
+        groups: &[Vec<Component>],
         change: Option<&DVector<f64>>,
     ) -> FrameResult {
-        let Replica { cloth, frames, .. } = &self.replicas[replica];
-        let pool = &self.solvers[replica];
+        let cloth = replica.cloth(frame);
         // A poisoned pool only means that another frame panicked; its solvers hold no state that matters.
         let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
         let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
-        let mut x = state.x.clone();
-        if let Some(change) =
-            change.filter(|change| state.sensitivity.len() == change.len() * cloth.unknowns())
-        {
-            for (column, step) in state.sensitivity.chunks_exact(cloth.unknowns().max(1)).zip(change.iter()) {
-                for (&coordinate, slope) in cloth.unknown_coordinates().iter().zip(column) {
-                    x[coordinate] += slope * step;
-                }
-            }
-        }
+        let mut x = predicted(state, cloth.unknown_coordinates(), change);
         let mut solve = |x: &mut Vec<f64>| {
-            let equilibrium = solver.solve(curves, x, &self.settings);
+            let equilibrium = solver.solve(curves, x, &self.task.settings);
             self.meter.add(&equilibrium);
-            equilibrium.status
+            equilibrium
         };
         let first = x.clone();
-        let mut status = solve(&mut x);
-        if status != Status::Converged && first != frames[frame].start {
+        let mut found = solve(&mut x);
+        if !found.converged() && first != frame.start {
             // A measured shape or a prediction that was too far off: from the blended shape instead.
-            x.copy_from_slice(&frames[frame].start);
-            status = solve(&mut x);
+            x.copy_from_slice(&frame.start);
+            found = solve(&mut x);
         }
-        let (forces, derivatives, sensitivity) = match status {
-            Status::Converged => self.sensitivities(&mut solver, replica, frame, curves, &x),
-            // What is no equilibrium has no sensitivities.
-            _ => Default::default(),
+        let mut result = FrameResult {
+            state: State { x, sensitivity: Vec::new(), escaped: state.escaped },
+            status: found.status,
+            forces: Vec::new(),
+            simulated: Vec::new(),
+            derivatives: Vec::new(),
         };
+        // What is no equilibrium has no sensitivities.
+        if found.converged() {
+            self.differentiate(&mut solver, replica, frame, curves, groups, &mut result);
+        }
         pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(solver);
-        FrameResult { state: State { x, sensitivity }, status, forces, derivatives }
+        result
     }
 
-    /// Simulated force components, their derivatives, and dx/dk.
-    fn sensitivities(
+    /// Simulated values, their derivatives with respect to the groups' curves, and dx/dk.
+    fn differentiate(
         &self,
         solver: &mut Solver<'_>,
-        replica: usize,
-        frame: usize,
+        replica: &Replica,
+        frame: &ReplicaFrame,
         curves: &Curves,
-        x: &[f64],
-    ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-        let Replica { cloth, frames, .. } = &self.replicas[replica];
-        let unknowns = cloth.unknowns();
-        let mut columns = Vec::new();
-        cloth.parameter_gradient(curves, self.component, x, &mut columns);
+        groups: &[Vec<Component>],
+        result: &mut FrameResult,
+    ) {
+        let cloth = replica.cloth(frame);
+        let x = &result.state.x;
+        let clip_forces = solver.clip_forces();
+        result.forces = frame.forces.iter().map(|component| component.of(&clip_forces)).collect();
+        let columns = parameter_columns(cloth, curves, groups, x);
+        let unknowns = cloth.unknown_coordinates();
         let mut sensitivity: Vec<f64> = columns
-            .chunks_exact(x.len())
-            .flat_map(|column| cloth.unknown_coordinates().iter().map(|&coordinate| -column[coordinate]))
+            .iter()
+            .flat_map(|column| unknowns.iter().map(|&coordinate| -column[coordinate]))
             .collect();
         solver.solve_linear(&mut sensitivity);
-        let direct: Vec<Vec<Vector3<f64>>> =
-            columns.chunks_exact(x.len()).map(|column| cloth.clip_forces(column)).collect();
-        let border = solver.border();
-        let through_shape = |clip: usize, point: usize| -> Vector3<f64> {
-            let slopes = &sensitivity[point * unknowns..(point + 1) * unknowns];
-            Vector3::from_fn(|i, _| {
-                let row = &border[(3 * clip + i) * unknowns..(3 * clip + i + 1) * unknowns];
-                row.iter().zip(slopes).map(|(a, b)| a * b).sum()
-            })
-        };
-        let forces = solver.clip_forces();
-        let components = &frames[frame].forces;
-        let simulated = components.iter().map(|c| forces[c.clip].dot(&c.direction)).collect();
-        let derivatives = components
-            .iter()
-            .flat_map(|c| {
-                (0..direct.len())
-                    .map(|point| (direct[point][c.clip] + through_shape(c.clip, point)).dot(&c.direction))
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-        (simulated, derivatives, sensitivity)
+        match self.task.objective {
+            Objective::Forces => {
+                result.simulated = result.forces.clone();
+                result.derivatives = force_derivatives(solver, cloth, frame, &columns, &sensitivity);
+            }
+            Objective::Positions => {
+                result.simulated = seen_unknowns(replica, frame).map(|(_, c)| x[c]).collect();
+                let seen = seen_unknowns(replica, frame).map(|(unknown, _)| unknown);
+                let row = |unknown| (0..columns.len()).map(move |k| k * unknowns.len() + unknown);
+                result.derivatives = seen.flat_map(row).map(|place| sensitivity[place]).collect();
+            }
+        }
+        result.state.sensitivity = sensitivity;
     }
 }
 
 impl Residuals for Simulation<'_> {
     type Error = Infallible;
 
-    /// Residuals of all measured force components, frame by frame, in units of the noise where that is known, else N.
+    /// Residuals of all measurements, frame by frame, in units of the noise where that is known, else N or m.
     fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
         let failed = |reason: String| Ok(Evaluation::Failed { reason });
         let curve = match self.curve.with_stiffnesses(point.iter().copied().collect()) {
@@ -372,7 +494,8 @@ impl Residuals for Simulation<'_> {
             Err(error) => return failed(error.to_string()),
         };
         let change = point - DVector::from_column_slice(self.curve.stiffnesses());
-        let results = self.solve_frames(&self.curves(&curve), Some(&change));
+        let groups = [self.task.fitted.clone()];
+        let results = self.solve_frames(&self.curves(&curve), &groups, Some(&change));
         if let Some(index) = results.iter().position(|result| result.status != Status::Converged) {
             let (replica, frame) = self.frames[index];
             let replica = &self.replicas[replica];
@@ -381,41 +504,136 @@ impl Residuals for Simulation<'_> {
                 replica.name, replica.frames[frame].index, results[index].status
             ));
         }
-        let points = point.len();
-        let scales = self.scales();
         let (mut residual, mut derivatives) = (Vec::new(), Vec::new());
         for (&(replica, frame), result) in self.frames.iter().zip(&results) {
-            let measured = &self.replicas[replica].frames[frame].forces;
-            let scale = scales[replica];
-            residual.extend(
-                measured.iter().zip(&result.forces).map(|(m, simulated)| (m.force - simulated) / scale),
-            );
-            derivatives.extend(result.derivatives.iter().map(|derivative| derivative / scale));
+            let replica = &self.replicas[replica];
+            let frame = &replica.frames[frame];
+            let measured = measured(replica, frame, self.task.objective);
+            let rows = result.derivatives.chunks_exact(point.len());
+            let scales = self.scales(replica, frame);
+            for (((measured, simulated), row), scale) in measured.zip(&result.simulated).zip(rows).zip(scales)
+            {
+                let plain = (measured - simulated) / scale;
+                let (value, slope) = self.task.robust.map_or((plain, 1.0), |robust| robust.bend(plain));
+                residual.push(value);
+                derivatives.extend(row.iter().map(|d| d * slope / scale));
+            }
         }
         let rows = residual.len();
         self.states = results.into_iter().map(|result| result.state).collect();
         self.curve = curve;
         Ok(Evaluation::Values {
             residual: DVector::from_vec(residual),
-            jacobian: Some(DMatrix::from_row_slice(rows, points, &derivatives)),
+            jacobian: Some(DMatrix::from_row_slice(rows, point.len(), &derivatives)),
         })
     }
 }
 
-/// The blended shape or, where it is nearer to balance, the measured one with the clips in place.
+/// The unknowns of a frame's cloth whose coordinate was seen: their index, and the coordinate's.
+fn seen_unknowns<'r>(
+    replica: &'r Replica,
+    frame: &'r ReplicaFrame,
+) -> impl Iterator<Item = (usize, usize)> + 'r {
+    let observed = frame.observed.iter();
+    let unknowns = replica.cloth(frame).unknown_coordinates();
+    observed.flat_map(move |observed| {
+        unknowns.iter().copied().enumerate().filter(|&(_, coordinate)| observed[coordinate].is_finite())
+    })
+}
+
+/// What was measured of what is compared.
+fn measured<'r>(
+    replica: &'r Replica,
+    frame: &'r ReplicaFrame,
+    objective: Objective,
+) -> Box<dyn Iterator<Item = f64> + 'r> {
+    match objective {
+        Objective::Forces => Box::new(frame.forces.iter().map(|component| component.force)),
+        Objective::Positions => Box::new(
+            seen_unknowns(replica, frame)
+                .filter_map(|(_, coordinate)| frame.observed.as_ref().map(|observed| observed[coordinate])),
+        ),
+    }
+}
+
+/// A state, moved ahead by a change of the control values.
+fn predicted(state: &State, unknowns: &[usize], change: Option<&DVector<f64>>) -> Vec<f64> {
+    let mut x = state.x.clone();
+    if let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * unknowns.len()) {
+        for (column, step) in state.sensitivity.chunks_exact(unknowns.len().max(1)).zip(change.iter()) {
+            for (&coordinate, slope) in unknowns.iter().zip(column) {
+                x[coordinate] += slope * step;
+            }
+        }
+    }
+    x
+}
+
+/// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 a node.
+pub(crate) fn parameter_columns(
+    cloth: &Cloth,
+    curves: &Curves,
+    groups: &[Vec<Component>],
+    x: &[f64],
+) -> Vec<Vec<f64>> {
+    let mut columns = Vec::new();
+    let mut part = Vec::new();
+    for group in groups {
+        let first = columns.len();
+        let points =
+            group.first().and_then(|&component| curves.get(component)).map_or(0, StiffnessCurve::len);
+        columns.resize(first + points, vec![0.0; x.len()]);
+        for &component in group {
+            cloth.parameter_gradient(curves, component, x, &mut part);
+            for (sum, column) in columns[first..].iter_mut().zip(part.chunks_exact(x.len())) {
+                sum.iter_mut().zip(column).for_each(|(sum, value)| *sum += value);
+            }
+        }
+    }
+    columns
+}
+
+/// Derivatives of the measured force components, component by component: direct, and through the shape.
+fn force_derivatives(
+    solver: &Solver<'_>,
+    cloth: &Cloth,
+    frame: &ReplicaFrame,
+    columns: &[Vec<f64>],
+    sensitivity: &[f64],
+) -> Vec<f64> {
+    let unknowns = cloth.unknowns();
+    let border = solver.border();
+    let slopes: Vec<Vec<Vector3<f64>>> = columns
+        .iter()
+        .zip(sensitivity.chunks_exact(unknowns.max(1)))
+        .map(|(column, dx)| {
+            let through_shape = |row: usize| -> f64 {
+                border[row * unknowns..(row + 1) * unknowns].iter().zip(dx).map(|(a, b)| a * b).sum()
+            };
+            let direct = cloth.clip_forces(column).into_iter().enumerate();
+            direct
+                .map(|(group, direct)| direct + Vector3::from_fn(|i, _| through_shape(3 * group + i)))
+                .collect()
+        })
+        .collect();
+    frame.forces.iter().flat_map(|component| slopes.iter().map(|groups| component.of(groups))).collect()
+}
+
+/// Where the first solve starts: at the measured shape where that leaves the plane, else at the replica's own start or,
+/// where it is nearer to balance, at the measured shape.
 fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
-    let cloth = &replica.cloth;
-    let blended = frame.start.clone();
+    let cloth = replica.cloth(frame);
+    let own = frame.start.clone();
     let Some(observed) = frame.observed.as_ref().filter(|x| x.iter().all(|c| c.is_finite())) else {
-        return State { x: blended, sensitivity: Vec::new() };
+        return State { x: own, ..State::default() };
     };
-    let mut measured = blended.clone();
+    let mut measured = own.clone();
     cloth.unknown_coordinates().iter().for_each(|&c| measured[c] = observed[c]);
     let imbalance = |x: &[f64]| {
         let mut gradient = vec![0.0; x.len()];
         cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));
         cloth.unknown_coordinates().iter().map(|&c| gradient[c] * gradient[c]).sum::<f64>()
     };
-    let x = if imbalance(&measured) < imbalance(&blended) { measured } else { blended };
-    State { x, sensitivity: Vec::new() }
+    let x = if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) { measured } else { own };
+    State { x, ..State::default() }
 }

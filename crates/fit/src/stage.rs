@@ -1,6 +1,20 @@
-//! The stages of the fit. Each fits one component on the sequences that show it, others known or left out.
+//! The stages of the fit. Each fits one curve on the sequences that show it, the others known or left out.
+//!
+//! | stage | fits | on | compares |
+//! |---|---|---|---|
+//! | [`stretch`] | weft, warp | strips pulled along them | clip forces |
+//! | [`shear`] | shear | picture frame, strips cut on the bias | forces along the bars; all forces |
+//! | [`bend`] | weft, warp, diagonal | sheets pushed over a table's edge | positions |
+//!
+//! Source: Miguel et al. 2012, §5.2.
 
+pub mod bend;
+mod course;
+pub mod shear;
+mod start;
 pub mod stretch;
+
+pub use course::{Plan, fit};
 
 use crate::error::{Error, Result};
 use crate::gauss_newton::{Iteration, Options};
@@ -22,11 +36,54 @@ pub enum Constraints {
     ControlPoints,
 }
 
+/// Which of a model's freedoms a fit uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variant {
+    /// Nonlinear curves, weft and warp apart.
+    #[default]
+    Orthotropic,
+    /// Constant stiffness, weft and warp apart.
+    Linear,
+    /// Nonlinear curves, the same for weft and warp.
+    Isotropic,
+    /// Constant stiffness, the same for weft and warp.
+    LinearIsotropic,
+}
+
+impl Variant {
+    /// All variants.
+    pub const ALL: [Self; 4] = [Self::Orthotropic, Self::Linear, Self::Isotropic, Self::LinearIsotropic];
+
+    /// Constant stiffness.
+    pub fn is_linear(self) -> bool {
+        matches!(self, Self::Linear | Self::LinearIsotropic)
+    }
+
+    /// Weft and warp share their curves.
+    pub fn is_isotropic(self) -> bool {
+        matches!(self, Self::Isotropic | Self::LinearIsotropic)
+    }
+}
+
+impl std::fmt::Display for Variant {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Orthotropic => "orthotropic",
+            Self::Linear => "linear",
+            Self::Isotropic => "isotropic",
+            Self::LinearIsotropic => "linear-isotropic",
+        })
+    }
+}
+
 /// How a curve is fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// The cloth model; default StVK.
     pub model: Model,
+    /// Which of its freedoms are used; default all.
+    pub variant: Variant,
     /// Columns and rows of the simulation's grid; default as many cells as 25×25 nodes have, near square.
     pub nodes: Option<[usize; 2]>,
     /// How its cells are split; default '/'.
@@ -42,6 +99,12 @@ pub struct Settings {
     /// More control points must lower the root mean square residual by this share; default 1 %. (Published: 1 % of its
     /// square.)
     pub growth_gain: f64,
+    /// Residuals above so many times the noise (where it is not given: the typical residual) count less; default `None`: all
+    /// count in full.
+    pub robust: Option<f64>,
+    /// Start every stage from this multiple of its own start value; default 1. For those who ask whether a fit depends on
+    /// where it starts.
+    pub start_factor: f64,
     /// The outer loop.
     pub outer: Options,
 }
@@ -50,6 +113,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             model: Model::Stvk,
+            variant: Variant::Orthotropic,
             nodes: None,
             diagonals: Diagonals::Forward,
             points: 5,
@@ -57,6 +121,8 @@ impl Default for Settings {
             compression: Compression::ZeroStrain,
             equilibrium: equilibrium::Settings::default(),
             growth_gain: 0.01,
+            robust: None,
+            start_factor: 1.0,
             // A share of 1e-6 of the sum of squares, or of 1e-7 of the stiffnesses, is far below any noise.
             outer: Options {
                 gain_tolerance: 1e-6,
@@ -69,6 +135,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Most control points that the variant allows.
+    pub fn most_points(&self) -> usize {
+        if self.variant.is_linear() { 1 } else { self.points }
+    }
+
     /// Names the setting that cannot be.
     ///
     /// # Errors
@@ -79,6 +150,12 @@ impl Settings {
         };
         if !(1..=50).contains(&self.points) {
             return setting("points", self.points.to_string(), "1 to 50 control points");
+        }
+        if !self.robust.is_none_or(|limit| limit > 0.0 && limit.is_finite()) {
+            return setting("robust", format!("{:?}", self.robust), "a positive multiple of the noise, as 3");
+        }
+        if !(self.start_factor > 0.0 && self.start_factor.is_finite()) {
+            return setting("start_factor", self.start_factor.to_string(), "a positive number");
         }
         match self.nodes {
             Some(nodes) if nodes.iter().any(|side| !(3..=1000).contains(side)) => {

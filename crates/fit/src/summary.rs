@@ -3,24 +3,28 @@
 use crate::frame::Phase;
 use crate::refine::Growth;
 use crate::report::{CurveReport, ForceRow, Hysteresis, Sample, SequenceReport};
-use crate::simulation::Simulation;
+use crate::simulation::{Settled, Simulation};
 use crate::uncertainty::Covariance;
+use cloth_sim::bending::Rolled;
 use cloth_sim::curve::StiffnessCurve;
 use nalgebra::DVector;
+use std::collections::BTreeSet;
 
 /// The curve with its bands, over the strains that the simulation's equilibria visit.
 pub(crate) fn curve_report(
     simulation: &Simulation<'_>,
     growth: Growth,
     covariance: &Covariance,
+    observed: bool,
 ) -> CurveReport {
     let Growth { curve, outcome, domain, .. } = growth;
     let [low, high] = simulation.visited();
-    let visited = [low.min(0.0), high];
+    let visited = [low.min(0.0), high.max(0.0)];
     let slack = &domain.rows * &outcome.point - &domain.bounds;
+    let last = curve.strains()[curve.len() - 1];
     CurveReport {
-        component: simulation.component(),
-        samples: samples(&curve, visited, covariance),
+        observed,
+        samples: samples(&curve, visited, covariance, rolled(simulation)),
         deviations: covariance.standard_deviations(),
         half_bands: covariance.half_bands(),
         rank: covariance.rank,
@@ -28,27 +32,50 @@ pub(crate) fn curve_report(
         correlated: covariance.correlated(),
         active_constraints: slack.iter().filter(|s| s.abs() <= 1e-9 * outcome.point.amax()).count(),
         visited,
+        share_visited: if last > 0.0 { (visited[1].max(-visited[0]) / last).min(1.0) } else { 1.0 },
         curve,
     }
+}
+
+/// How the fitted bending elements meet a rolled sheet; `None` for stretch and shear.
+fn rolled(simulation: &Simulation<'_>) -> Option<Rolled> {
+    let component = simulation.task().fitted[0];
+    simulation.settled().find_map(|s| s.replica.cloth(s.frame).bending()?.rolled(component))
 }
 
 /// Rows of a curve file.
 const SAMPLES: usize = 201;
 
-fn samples(curve: &StiffnessCurve, [low, high]: [f64; 2], covariance: &Covariance) -> Vec<Sample> {
+fn samples(
+    curve: &StiffnessCurve,
+    [low, high]: [f64; 2],
+    covariance: &Covariance,
+    rolled: Option<Rolled>,
+) -> Vec<Sample> {
     let mut weights = vec![0.0; curve.len()];
+    let ends = [low, high].map(|strain| rolled.map_or(strain, |rolled| rolled.curvature(strain)));
     (0..SAMPLES)
         .map(|i| {
-            let strain = low + (high - low) * i as f64 / (SAMPLES - 1) as f64;
-            let stress = curve.stress(strain);
+            let place = ends[0] + (ends[1] - ends[0]) * i as f64 / (SAMPLES - 1) as f64;
+            let strain = rolled.map_or(place, |rolled| rolled.strain(place));
+            let lever = rolled.map_or(1.0, |rolled| rolled.lever(place));
+            let stress = lever * curve.stress(strain);
             curve.weights(strain, &mut weights);
             let half = covariance.half_band(&DVector::from_column_slice(&weights));
             // Stress has the sign of strain: what lies beyond zero is not possible.
             let band = half.map(|half| {
-                let [low, high] = [stress - half, stress + half];
+                let [low, high] = [stress - lever * half, stress + lever * half];
                 if strain >= 0.0 { [low.max(0.0), high] } else { [low, high.min(0.0)] }
             });
-            Sample { strain, stiffness: curve.stiffness(strain), stress, band }
+            let stiffness = match rolled {
+                None | Some(Rolled::Hinges) if place == 0.0 => {
+                    curve.stiffness(0.0) * rolled.map_or(1.0, |rolled| rolled.strain(1.0))
+                }
+                // Ring-2 springs do not resist the first bend.
+                Some(Rolled::Springs { .. }) if place == 0.0 => 0.0,
+                _ => stress / place,
+            };
+            Sample { strain: place, stiffness, stress, band }
         })
         .collect()
 }
@@ -60,7 +87,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     let mut reports: Vec<SequenceReport> = Vec::new();
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut positions: Vec<(f64, usize)> = Vec::new();
-    for ((replica, frame, x), simulated) in simulation.frames().zip(forces) {
+    for (Settled { replica, frame, x, multi_stable }, simulated) in simulation.settled().zip(forces) {
         let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
             let grid = &replica.specimen.grid;
             reports.push(SequenceReport {
@@ -70,10 +97,11 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 at_rest: replica.frames_at_rest,
                 planar: replica.planar,
                 nodes: [grid.columns, grid.rows],
-                force_rms: 0.0,
+                force_rms: None,
                 force_largest: 0.0,
                 position_rms: None,
                 outliers: Vec::new(),
+                multi_stable: Vec::new(),
                 hysteresis: None,
                 forces: Vec::new(),
             });
@@ -83,6 +111,9 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
         });
         let report = &mut reports[at];
         report.frames += 1;
+        if multi_stable {
+            report.multi_stable.push(frame.index);
+        }
         for (component, &cloth) in frame.forces.iter().zip(simulated) {
             // The simulated cord force: what the cloth pulls with, less the clip's weight.
             let simulated = cloth + component.measured - component.force;
@@ -107,21 +138,30 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 simulated,
             });
         }
-        for (observed, x) in frame.observed.iter().flat_map(|o| o.chunks_exact(3).zip(x.chunks_exact(3))) {
-            let square: f64 = observed.iter().zip(x).map(|(o, x)| (o - x) * (o - x)).sum();
-            if square.is_finite() {
-                positions[at].0 += square;
-                positions[at].1 += 1;
+        // Where a shape is one of several, its distance from another is no measure (Miguel et al. 2012, §6).
+        let compared = frame.observed.iter().filter(|_| !multi_stable);
+        let free: BTreeSet<usize> =
+            replica.cloth(frame).unknown_coordinates().iter().map(|c| c / 3).collect();
+        for observed in compared {
+            for &node in &free {
+                let place = 3 * node..3 * node + 3;
+                let square: f64 =
+                    observed[place.clone()].iter().zip(&x[place]).map(|(o, x)| (o - x) * (o - x)).sum();
+                if square.is_finite() {
+                    positions[at].0 += square;
+                    positions[at].1 += 1;
+                }
             }
         }
     }
-    for ((report, [up, up_square, down, down_square]), (square, count)) in
+    for ((report, [up, up_square, down, down_square]), (square, seen)) in
         reports.iter_mut().zip(sums).zip(positions)
     {
         let squares: f64 = report.forces.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
-        report.force_rms = (squares / report.forces.len() as f64).sqrt();
+        let count = report.forces.len();
+        report.force_rms = (count > 0).then(|| (squares / count as f64).sqrt());
         report.outliers = outliers(&report.forces);
-        report.position_rms = (count > 0).then(|| (square / count as f64).sqrt());
+        report.position_rms = (seen > 0).then(|| (square / seen as f64).sqrt());
         if up_square > 0.0 && down_square > 0.0 {
             report.hysteresis = Some(Hysteresis { loading: up / up_square, unloading: down / down_square });
         }

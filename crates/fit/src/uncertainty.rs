@@ -130,6 +130,8 @@ fn student_975(freedom: f64) -> f64 {
 pub struct Covariance {
     /// Covariance of the control values, over what the data see.
     pub matrix: DMatrix<f64>,
+    /// (JᵀJ)⁻¹ over what the data see.
+    inverse: DMatrix<f64>,
     /// How many directions the data see.
     pub rank: usize,
     /// Directions that they do not see, as columns.
@@ -155,12 +157,12 @@ impl Covariance {
         let rank = (0..parameters).filter(|&i| seen(i)).count();
         let excess = scatter.misfit.powi(2) * scatter.measurements as f64 / rank.max(1) as f64;
         let variance = scatter.noise.powi(2) + excess;
-        let mut matrix = DMatrix::zeros(parameters, parameters);
+        let mut inverse = DMatrix::zeros(parameters, parameters);
         let mut unseen = Vec::new();
         for i in 0..parameters {
             let direction = gram.eigenvectors.column(i).component_div(&norms);
             if seen(i) {
-                matrix += &direction * direction.transpose() * (variance / gram.eigenvalues[i]);
+                inverse += &direction * direction.transpose() / gram.eigenvalues[i];
             } else {
                 unseen.push(direction.normalize());
             }
@@ -173,7 +175,17 @@ impl Covariance {
             0 => None,
             freedom => Some(student_975(freedom as f64)),
         };
-        Self { matrix, rank, unseen, quantile }
+        Self { matrix: &inverse * variance, inverse, rank, unseen, quantile }
+    }
+
+    /// G = (JᵀJ)⁻¹ Jᵀ J_q: what an error of other parameters does to these.
+    pub fn gain(&self, jacobian: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+        &self.inverse * (jacobian.transpose() * other)
+    }
+
+    /// Adds what comes from the errors of other parameters: G Cov(q) Gᵀ.
+    pub fn carry(&mut self, gain: &DMatrix<f64>, covariance: &DMatrix<f64>) {
+        self.matrix += gain * covariance * gain.transpose();
     }
 
     /// Half the width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave nothing to judge it by.

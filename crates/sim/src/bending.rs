@@ -18,7 +18,68 @@ pub enum Bending {
     DiscreteShells(Vec<Hinge>),
 }
 
+/// What a component's elements are to a sheet that is rolled to a cylinder across them: the way from a model's own strain
+/// and stress to curvature and moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rolled {
+    /// Hinges: strain = 3 × curvature, moment = stress, flexural rigidity = 3 × stiffness.
+    ///
+    /// The hinges' h₀ is a third of the mean height, which is where the threes come from. True along the lines of a
+    /// regular grid; elsewhere the triangulation changes it (docs/model.md).
+    Hinges,
+    /// Ring-2 springs over two segments of this length, m, which bear this share of the cloth; read at the size of their
+    /// strain.
+    Springs {
+        /// Length of a segment, m.
+        segment: f64,
+        /// Share of the cloth.
+        share: f64,
+    },
+}
+
+impl Rolled {
+    /// The size of the strain at a curvature, 1/m.
+    pub fn strain(self, curvature: f64) -> f64 {
+        match self {
+            Self::Hinges => 3.0 * curvature,
+            Self::Springs { segment, .. } => 2.0 * (0.25 * curvature * segment).sin().powi(2),
+        }
+    }
+
+    /// The curvature, 1/m, at a size of the strain.
+    pub fn curvature(self, strain: f64) -> f64 {
+        match self {
+            Self::Hinges => strain / 3.0,
+            Self::Springs { segment, .. } => 4.0 / segment * (0.5 * strain).clamp(0.0, 1.0).sqrt().asin(),
+        }
+    }
+
+    /// Moment per width over stress at a curvature: m for springs, 1 for hinges.
+    pub fn lever(self, curvature: f64) -> f64 {
+        match self {
+            Self::Hinges => 1.0,
+            Self::Springs { segment, share } => share * 0.5 * segment * (0.5 * curvature * segment).sin(),
+        }
+    }
+}
+
 impl Bending {
+    /// What a component's elements are to a rolled sheet; `None` if there are none.
+    pub fn rolled(&self, component: Component) -> Option<Rolled> {
+        match self {
+            Self::DiscreteShells(hinges) => {
+                hinges.iter().any(|hinge| hinge.component == component).then_some(Rolled::Hinges)
+            }
+            // Both families along neither yarn share the cloth, and a roll bends one of them.
+            Self::Springs(springs) => {
+                springs.iter().find(|spring| spring.component == component).map(|spring| Rolled::Springs {
+                    segment: 0.5 * spring.rest_length,
+                    share: if component == Component::BendDiagonal { 0.5 } else { 1.0 },
+                })
+            }
+        }
+    }
+
     /// The elements that the given components need; `None` if none of them is a bending component.
     ///
     /// # Errors

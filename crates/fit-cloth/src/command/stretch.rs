@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::text;
 use clap::Args;
 use cloth_fit::error::Error;
-use cloth_fit::frame::MeasurementSet;
+use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::io::read_set;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::report::StageReport;
@@ -125,11 +125,12 @@ fn tell_model(set: &MeasurementSet, stages: &[StageReport], output: &mut impl Wr
         writeln!(output, "{}\n{}", text::iterations(stage), text::curve(stage))?;
     }
     for component in COMPONENTS {
-        if !stages.iter().any(|stage| stage.component == component) {
+        if !stages.iter().any(|stage| stage.components.contains(&component)) {
             writeln!(output, "{component}: no sequence shows it; it is not fitted\n")?;
         }
     }
-    for sequence in set.sequences.iter().filter(|s| stretch::component_of(s.kind).is_none()) {
+    for sequence in set.sequences.iter().filter(|s| ![Kind::StretchWeft, Kind::StretchWarp].contains(&s.kind))
+    {
         writeln!(output, "{} ({}) takes no part in a fit of stretch\n", sequence.name, sequence.kind)?;
     }
     writeln!(output, "{}", text::residuals(stages))?;

@@ -15,7 +15,7 @@ pub(super) fn draw(stage: &StageReport) -> Drawing {
         let area = SVGBackend::with_string(&mut figure, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&area)
-            .caption(format!("{}, {}", stage.component, stage.model), ("sans-serif", 36))
+            .caption(format!("{}, {}", stage.name(), stage.model), ("sans-serif", 36))
             .margin(28)
             .x_label_area_size(88)
             .y_label_area_size(128)

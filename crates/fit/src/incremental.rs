@@ -1,0 +1,134 @@
+//! The incremental fit: stage after stage, each with what the ones before have found.
+//!
+//! ```text
+//! stretch weft ‖ warp ──▶ shear ──▶ bend weft ‖ warp ──▶ bend diagonal ──▶ once more over shear and bending
+//! ```
+//!
+//! A set that lacks a sequence is fitted as far as it goes; what nobody measured is assumed, and the report says so.
+//!
+//! Source: Miguel et al. 2012, §5.2.
+
+use crate::error::Result;
+use crate::frame::MeasurementSet;
+use crate::knowledge::Knowledge;
+use crate::report::{SequenceReport, StageReport};
+use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
+use cloth_sim::material::{Component, Curves, Model};
+
+/// A stage of the fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Weft and warp stretch.
+    Stretch,
+    /// Shear.
+    Shear,
+    /// Weft, warp and diagonal bending.
+    Bend,
+}
+
+impl Stage {
+    /// All stages, in order.
+    pub const ALL: [Self; 3] = [Self::Stretch, Self::Shear, Self::Bend];
+}
+
+/// What a fit of several stages found.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitReport {
+    /// The cloth model.
+    pub model: Model,
+    /// Which of its freedoms were used.
+    pub variant: Variant,
+    /// Every stage in the order it ran; of a component that was fitted twice, both.
+    pub stages: Vec<StageReport>,
+    /// What is known now: what was given, and what was observed.
+    pub knowledge: Knowledge,
+}
+
+impl FitReport {
+    /// The last stage over a component; `None` if no sequence shows it.
+    pub fn stage(&self, component: Component) -> Option<&StageReport> {
+        self.stages.iter().rev().find(|stage| stage.components.contains(&component))
+    }
+
+    /// The stages that count: of two passes over a component the last.
+    pub fn last_stages(&self) -> impl Iterator<Item = &StageReport> {
+        let last = |stage: &&StageReport| {
+            stage.components.first().and_then(|&component| self.stage(component)).is_some_and(|s| s == *stage)
+        };
+        self.stages.iter().filter(last)
+    }
+
+    /// How each sequence was met in the end: with the last curve that it takes part in fitting.
+    pub fn sequences(&self) -> Vec<(&StageReport, &SequenceReport)> {
+        let mut last: Vec<(&StageReport, &SequenceReport)> = Vec::new();
+        // A sequence belongs to the stage that is about it; the diagonal's stage only borrows those of weft and warp.
+        for stage in self.last_stages() {
+            for sequence in &stage.sequences {
+                if !last.iter().any(|(_, known)| known.name == sequence.name) {
+                    last.push((stage, sequence));
+                }
+            }
+        }
+        last
+    }
+
+    /// The curves that were observed or given.
+    pub fn curves(&self) -> &Curves {
+        self.knowledge.curves()
+    }
+
+    /// Every stage came to its minimum.
+    pub fn converged(&self) -> bool {
+        self.last_stages().all(|stage| stage.converged)
+    }
+}
+
+/// Fits the wanted stages of a set in order, from what is known.
+///
+/// # Errors
+/// As [`stage::fit`].
+pub fn fit(
+    set: &MeasurementSet,
+    wanted: &[Stage],
+    known: &Knowledge,
+    settings: &Settings,
+    watch: &mut Watch<'_>,
+) -> Result<FitReport> {
+    let mut report = FitReport {
+        model: settings.model,
+        variant: settings.variant,
+        stages: Vec::new(),
+        knowledge: known.clone(),
+    };
+    for plan in plans(wanted, settings.variant) {
+        // What the first pass could not see, a second does not either.
+        if plan.pass > 1 && !report.knowledge.knows(plan.fitted[0]) {
+            continue;
+        }
+        report.stages.extend(stage::fit(set, &plan, &mut report.knowledge, settings, watch)?);
+    }
+    Ok(report)
+}
+
+/// What is fitted, in order.
+fn plans(wanted: &[Stage], variant: Variant) -> Vec<Plan> {
+    let pair = |a, b| if variant.is_isotropic() { vec![vec![a, b]] } else { vec![vec![a], vec![b]] };
+    let stretches = pair(Component::StretchWeft, Component::StretchWarp);
+    let mut bends = pair(Component::BendWeft, Component::BendWarp);
+    bends.push(vec![Component::BendDiagonal]);
+    let wants = |stage| wanted.contains(&stage);
+    let mut plans = Vec::new();
+    if wants(Stage::Stretch) {
+        plans.extend(stretches.iter().map(|components| stretch::plan(components)));
+    }
+    for pass in [1, 2] {
+        if wants(Stage::Shear) && (pass == 1 || wants(Stage::Bend)) {
+            plans.push(shear::plan(pass));
+        }
+        if wants(Stage::Bend) {
+            plans.extend(bends.iter().map(|components| bend::plan(components, pass)));
+        }
+    }
+    plans
+}

@@ -1,0 +1,180 @@
+//! What a table holds of a sheet pushed over its edge, frame by frame.
+//!
+//! ```text
+//!        held                     free
+//! ───●───●───●───●│  ●   ●╲
+//!    table        │ 1   2   ●╲       the lines of nodes up to the second past the edge are held where they were seen:
+//!                 edge         ●     the last held segment lies on the free cloth and carries the measured slope
+//! ```
+//!
+//! To hold only what lies on the table would make the fitted rigidity 33–150 % too large: the cloth bends at the edge
+//! itself, which falls between two lines. Each line is seen by many nodes: a straight line through them is what is held.
+
+use super::bad_geometry;
+use crate::error::Result;
+use crate::frame::Sequence;
+use crate::specimen::Specimen;
+use nalgebra::Vector3;
+
+/// Lines past the edge that are held.
+const PAST_EDGE: usize = 2;
+
+/// Fewer free lines than this say nothing of bending.
+const FEWEST_FREE: usize = 3;
+
+/// The lines of a specimen's grid that run along a table's edge, from the one farthest back on the table to the tip.
+#[derive(Debug, Clone)]
+pub(super) struct Lines {
+    /// Nodes of every line.
+    nodes: Vec<Vec<usize>>,
+    edge: Vector3<f64>,
+    outward: Vector3<f64>,
+}
+
+/// What is held in one frame, and the smoothed shape.
+#[derive(Debug, Clone)]
+pub(super) struct Overhang {
+    /// How many lines are held.
+    pub(super) held: usize,
+    /// Length of cloth past the edge, m.
+    pub(super) length: f64,
+    /// Every line straightened, 3 stacked coordinates a node, m.
+    pub(super) smooth: Vec<f64>,
+}
+
+impl Lines {
+    /// Finds which way the lines run from the observed shapes.
+    ///
+    /// # Errors
+    /// No table, no shape, or an edge that is not along a side of the specimen.
+    pub(super) fn new(sequence: &Sequence, specimen: &Specimen, shapes: &[Option<Vec<f64>>]) -> Result<Self> {
+        let Some(table) = sequence.table else {
+            return Err(bad_geometry(
+                sequence,
+                "no table".into(),
+                "a [table] in test.toml: where its edge is",
+            ));
+        };
+        let outward = specimen.turn(&Vector3::from(table.outward)).normalize();
+        let edge = specimen.place(&Vector3::from(table.edge_point_m));
+        let grid = specimen.grid;
+        let columns: Vec<Vec<usize>> =
+            (0..grid.columns).map(|c| (0..grid.rows).map(|r| grid.node(c, r)).collect()).collect();
+        let rows: Vec<Vec<usize>> =
+            (0..grid.rows).map(|r| (0..grid.columns).map(|c| grid.node(c, r)).collect()).collect();
+        // How far the sheet reaches outward along its two sides, over all frames.
+        let mut reach = [0.0; 2];
+        for shape in shapes.iter().flatten() {
+            for (reach, lines) in reach.iter_mut().zip([&columns, &rows]) {
+                let mean = |line: &Vec<usize>| {
+                    mean(line.iter().filter_map(|&n| point(shape, n)).map(|p| p.dot(&outward)))
+                };
+                if let (Some(first), Some(last)) = (mean(&lines[0]), mean(&lines[lines.len() - 1])) {
+                    *reach += last - first;
+                }
+            }
+        }
+        let [along, across] = if f64::abs(reach[0]) > f64::abs(reach[1]) { [0, 1] } else { [1, 0] };
+        if !(f64::abs(reach[along]) > 4.0 * f64::abs(reach[across])) {
+            return Err(bad_geometry(
+                sequence,
+                "a sheet whose sides are not along the table's edge, or no shape at all".into(),
+                "shapes (positions.npy) of a sheet pushed straight over the edge, and outward and edge_direction as they are",
+            ));
+        }
+        let mut nodes = if along == 0 { columns } else { rows };
+        if reach[along] < 0.0 {
+            nodes.reverse();
+        }
+        Ok(Self { nodes, edge, outward })
+    }
+
+    /// What one observed shape says; `None` where too little hangs over, or a line was hardly seen.
+    pub(super) fn overhang(&self, specimen: &Specimen, shape: &[f64]) -> Option<Overhang> {
+        let straight: Vec<Line> =
+            self.nodes.iter().map(|line| Line::through(specimen, line, shape)).collect::<Option<_>>()?;
+        let past = |line: &Line| (line.centre - self.edge).dot(&self.outward);
+        // The table ends at the last line on it; what hangs may swing back under the edge.
+        let on_table = straight.iter().take_while(|line| past(line) <= 0.0).count();
+        let held = on_table + PAST_EDGE;
+        if on_table == 0 || held + FEWEST_FREE > self.nodes.len() {
+            return None;
+        }
+        let mut smooth = vec![0.0; shape.len()];
+        for (line, nodes) in straight.iter().zip(&self.nodes) {
+            for &node in nodes {
+                let place = line.at(specimen.mesh.positions[node]);
+                smooth[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
+            }
+        }
+        let lengths = straight.windows(2).skip(on_table).map(|pair| (pair[1].centre - pair[0].centre).norm());
+        let length = lengths.sum::<f64>() + past(&straight[on_table]);
+        Some(Overhang { held, length, smooth })
+    }
+
+    /// The nodes of the first lines.
+    pub(super) fn first(&self, lines: usize) -> impl Iterator<Item = usize> + '_ {
+        self.nodes[..lines].iter().flatten().copied()
+    }
+
+    /// From the edge to the tip, m; `None` if the sheet does not reach the edge.
+    pub(super) fn chord(&self, x: &[f64]) -> Option<Vector3<f64>> {
+        let centre = |line: &Vec<usize>| {
+            let places = line.iter().map(|&n| Vector3::from_column_slice(&x[3 * n..3 * n + 3]));
+            places.sum::<Vector3<f64>>() / line.len() as f64
+        };
+        let centres: Vec<Vector3<f64>> = self.nodes.iter().map(centre).collect();
+        let past = |p: &Vector3<f64>| (p - self.edge).dot(&self.outward);
+        let after = centres.iter().position(|p| past(p) > 0.0).filter(|&after| after > 0)?;
+        let [before, after] = [centres[after - 1], centres[after]];
+        let edge = before + (after - before) * (-past(&before) / (past(&after) - past(&before)));
+        Some(centres[centres.len() - 1] - edge)
+    }
+}
+
+/// A straight line through the places of its nodes: place = centre + slope × (rest place along the line).
+struct Line {
+    centre: Vector3<f64>,
+    slope: Vector3<f64>,
+    /// Middle of the seen nodes at rest, and the direction of the line there.
+    rest: Vector3<f64>,
+    along: Vector3<f64>,
+}
+
+impl Line {
+    fn through(specimen: &Specimen, nodes: &[usize], shape: &[f64]) -> Option<Self> {
+        let seen: Vec<(Vector3<f64>, Vector3<f64>)> = nodes
+            .iter()
+            .filter_map(|&node| Some((specimen.mesh.positions[node], point(shape, node)?)))
+            .collect();
+        if seen.len() < 2 {
+            return None;
+        }
+        let count = seen.len() as f64;
+        let rest = seen.iter().map(|(rest, _)| rest).sum::<Vector3<f64>>() / count;
+        let centre = seen.iter().map(|(_, place)| place).sum::<Vector3<f64>>() / count;
+        let along = (seen[seen.len() - 1].0 - seen[0].0).normalize();
+        let (mut product, mut square) = (Vector3::zeros(), 0.0);
+        for (at, place) in &seen {
+            let s = (at - rest).dot(&along);
+            product += (place - centre) * s;
+            square += s * s;
+        }
+        Some(Self { centre, slope: product / square, rest, along })
+    }
+
+    fn at(&self, rest: Vector3<f64>) -> Vector3<f64> {
+        self.centre + self.slope * (rest - self.rest).dot(&self.along)
+    }
+}
+
+/// A node's place, if it was seen.
+fn point(shape: &[f64], node: usize) -> Option<Vector3<f64>> {
+    let p = Vector3::from_column_slice(&shape[3 * node..3 * node + 3]);
+    p.iter().all(|c| c.is_finite()).then_some(p)
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    (count > 0.0).then(|| sum / count)
+}

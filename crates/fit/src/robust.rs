@@ -1,0 +1,50 @@
+//! Residuals that do not let a few outliers rule.
+//!
+//! ```text
+//! ρ(r) = 2c² (√(1 + (r/c)²) − 1)      pseudo-Huber: r² where small, 2c|r| where large
+//! r̃ = sign(r) √ρ(r)                   so that Σ r̃² is the robust sum, and a least-squares method minimises it
+//! ```
+//!
+//! Source: Hartley and Zisserman, Multiple View Geometry (2004), A6.8.
+
+/// Residuals up to about this size count in full.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Robust {
+    /// c, in the units of the residuals.
+    pub limit: f64,
+}
+
+impl Robust {
+    /// r̃ and dr̃/dr.
+    pub fn bend(&self, residual: f64) -> (f64, f64) {
+        let ratio = residual / self.limit;
+        let root = (1.0 + ratio * ratio).sqrt();
+        // √(2(root − 1)) c = |r| √(2/(root + 1)), without cancellation.
+        let share = (2.0 / (root + 1.0)).sqrt();
+        (residual * share, 1.0 / (root * share))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_residuals_count_in_full_and_large_ones_linearly() {
+        let robust = Robust { limit: 3.0 };
+        let (value, slope) = robust.bend(1e-4);
+        assert!((value - 1e-4).abs() < 1e-12 && (slope - 1.0).abs() < 1e-8);
+        let (value, _) = robust.bend(-3e4);
+        assert!(value < 0.0 && (value * value / (2.0 * 3.0 * 3e4) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_slope_is_the_derivative() {
+        let robust = Robust { limit: 2.0 };
+        for residual in [-7.0, -1.0, 0.3, 2.0, 40.0] {
+            let h = 1e-6;
+            let slope = (robust.bend(residual + h).0 - robust.bend(residual - h).0) / (2.0 * h);
+            assert!((slope - robust.bend(residual).1).abs() < 1e-8);
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The course that every stage takes: replicas, a start, equilibria, a curve that grows, and how sure it is.
+
+use super::start::{Start, start};
+use super::{Settings, Watch};
+use crate::error::{Error, Result};
+use crate::frame::{Kind, MeasurementSet};
+use crate::gauss_newton::Outcome;
+use crate::knowledge::Knowledge;
+use crate::refine::{Growth, grow, refit};
+use crate::replica::{Parts, Replica};
+use crate::report::{Basis, StageReport};
+use crate::simulation::{Objective, Simulation, Task};
+use crate::summary::{curve_report, sequence_reports};
+use crate::uncertainty::{Covariance, Scatter};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::Component;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a stage fits, and on what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plan {
+    /// The components that share the fitted curve: one, or weft and warp of an isotropic variant.
+    pub fitted: Vec<Component>,
+    /// All components that store energy.
+    pub components: Vec<Component>,
+    /// What is compared.
+    pub objective: Objective,
+    /// The tests that show it.
+    pub kinds: Vec<Kind>,
+    /// Sheets between clips stay in their plane.
+    pub flat: bool,
+    /// First or second pass over the component.
+    pub pass: usize,
+}
+
+impl Plan {
+    /// The fitted components by name.
+    pub fn name(&self) -> String {
+        let names: Vec<String> = self.fitted.iter().map(|component| component.to_string()).collect();
+        names.join(" = ")
+    }
+
+    /// The replicas of all sequences of a set that show what is fitted.
+    ///
+    /// # Errors
+    /// Sequences that no replica can be made of.
+    pub fn replicas(&self, set: &MeasurementSet, settings: &Settings) -> Result<Vec<Replica>> {
+        let parts = Parts {
+            model: settings.model,
+            components: self.components.clone(),
+            areal_density: set.fabric.areal_density_kg_m2,
+            nodes: settings.nodes,
+            diagonals: settings.diagonals,
+            flat: self.flat,
+        };
+        let shows = set.sequences.iter().filter(|sequence| self.kinds.contains(&sequence.kind));
+        shows.map(|sequence| Replica::new(sequence, &parts)).collect()
+    }
+}
+
+/// Runs one stage and adds what it found to what is known; `None` if no sequence shows what it fits, or if a second pass
+/// over it has nothing to add.
+///
+/// # Errors
+/// Bad settings; sequences that no replica can be made of; no frame with an equilibrium.
+pub fn fit(
+    set: &MeasurementSet,
+    plan: &Plan,
+    knowledge: &mut Knowledge,
+    settings: &Settings,
+    watch: &mut Watch<'_>,
+) -> Result<Option<StageReport>> {
+    settings.validate()?;
+    let clock = Instant::now();
+    let spent_before = watch.meter.read();
+    let replicas = plan.replicas(set, settings)?;
+    let in_plane = plan.fitted[0] == Component::Shear && replicas.iter().all(|replica| replica.planar);
+    // What stays in its plane does not feel the bending that the first pass left out.
+    if replicas.is_empty() || plan.pass > 1 && in_plane {
+        return Ok(None);
+    }
+    let Start { stiffness, largest, known, assumed } = start(plan, &replicas, knowledge, settings)?;
+    let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
+    let before = knowledge.curves().get(plan.fitted[0]).filter(|_| plan.pass > 1).cloned();
+    let first = match &before {
+        Some(curve) => curve.clone(),
+        None => StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?,
+    };
+    let task = Task {
+        fitted: plan.fitted.clone(),
+        objective: plan.objective,
+        known,
+        settings: settings.equilibrium,
+        robust: None,
+    };
+    let mut simulation = Simulation::new(&replicas, task, first, Arc::clone(&watch.meter));
+    let dropped = simulation.dropped().len();
+    if simulation.settled().next().is_none() {
+        let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
+        return Err(unfit(
+            &replicas,
+            format!("no frame with an equilibrium ({status})"),
+            "clips that stretch the specimen evenly, on cells that are not too long",
+        ));
+    }
+    if let Some(limit) = settings.robust {
+        simulation.make_robust(limit);
+    }
+    let growth = match before {
+        Some(_) => refit(&mut simulation, settings, 1e-3 * largest, watch),
+        None => grow(&mut simulation, settings, 1e-3 * largest, watch),
+    };
+    let growth = growth.map_err(mechanics(plan))?;
+    if growth.outcome.residual.is_empty() {
+        let status = growth.outcome.status.to_string();
+        return Err(unfit(&replicas, status, "measurements that some curve can answer"));
+    }
+    let tracks = simulation.tracks();
+    // The last trial may have been a step that was rejected.
+    simulation.set_curve(growth.curve.clone());
+    let forces = simulation.settle();
+    let complete = simulation.dropped().len() == dropped;
+    let Outcome { residual, jacobian, status, .. } = &growth.outcome;
+    let noise = simulation.noise_is_known().then_some(1.0);
+    let scatter = Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), &tracks, noise);
+    let observed = is_observed(plan, &growth, &scatter, knowledge);
+    let mut covariance = Covariance::new(jacobian, &scatter);
+    let converged = status.converged() && complete;
+    let others = knowledge.without(&plan.fitted);
+    let groups = others.groups(&plan.components);
+    let mut gain = DMatrix::zeros(growth.curve.len(), 0);
+    if complete && !groups.is_empty() {
+        gain = covariance.gain(jacobian, &simulation.sensitivity_to(&groups));
+        covariance.carry(&gain, &others.covariance(&plan.components));
+    }
+    if observed {
+        knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, &plan.components, &gain);
+    }
+    let basis = Basis {
+        carried: groups.into_iter().flatten().collect(),
+        known: others.curves().components().filter(|c| plan.components.contains(c)).collect(),
+        assumed,
+    };
+    let (levels, stopped) = (growth.levels.clone(), growth.stopped.clone());
+    Ok(Some(StageReport {
+        components: plan.fitted.clone(),
+        pass: plan.pass,
+        model: settings.model,
+        variant: settings.variant,
+        objective: plan.objective,
+        basis,
+        curve: curve_report(&simulation, growth, &covariance, observed),
+        scatter: scatter.times(simulation.unit()),
+        sequences: sequence_reports(&simulation, &forces),
+        dropped: simulation.dropped().to_vec(),
+        levels,
+        growth: stopped,
+        converged,
+        counters: watch.meter.read().since(&spent_before),
+        seconds: clock.elapsed().as_secs_f64(),
+    }))
+}
+
+/// True if the measurements tell the curve's scale: its 95 % band is less than the curve itself, or, where the curve is
+/// far below what is known of the other bending, less than that.
+fn is_observed(plan: &Plan, growth: &Growth, scatter: &Scatter, knowledge: &Knowledge) -> bool {
+    let others = [Component::BendWeft, Component::BendWarp];
+    let bends = plan.fitted[0].is_bending();
+    let usual = others.iter().filter_map(|&component| knowledge.curves().get(component));
+    let usual = usual.flat_map(|curve| curve.stiffnesses().iter().copied());
+    let reference = usual.filter(|_| bends).fold(f64::MAX, f64::min);
+    let floor = if reference < f64::MAX { reference } else { 0.0 };
+    let size =
+        DVector::from_iterator(growth.curve.len(), growth.curve.stiffnesses().iter().map(|k| k.max(floor)));
+    let signal = (&growth.outcome.jacobian * size).norm();
+    let variance = scatter.noise.powi(2) + scatter.misfit.powi(2) * scatter.measurements as f64;
+    signal > 2.0 * variance.sqrt()
+}
+
+pub(super) fn unfit(replicas: &[Replica], found: String, expected: &str) -> Error {
+    let names: Vec<&str> = replicas.iter().map(|replica| &replica.name[..]).collect();
+    Error::Geometry { sequence: names.join(", "), found, expected: expected.into() }
+}
+
+pub(super) fn mechanics(plan: &Plan) -> impl Fn(cloth_sim::error::Error) -> Error {
+    let context = plan.name();
+    move |source| Error::Mechanics { context: context.clone(), source }
+}

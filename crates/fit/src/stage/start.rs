@@ -1,0 +1,151 @@
+//! Where a stage starts without any simulation: a constant stiffness, and constants for what is not known yet.
+
+use super::course::{Plan, mechanics, unfit};
+use super::{Constraints, Settings};
+use crate::error::Result;
+use crate::gap;
+use crate::gauss_newton::Domain;
+use crate::knowledge::Knowledge;
+use crate::refine::domain;
+use crate::replica::Replica;
+use crate::simulation::Objective;
+use cloth_sim::curve::{StiffnessCurve, equidistant};
+use cloth_sim::material::{Component, Curves};
+
+/// Where a stage starts.
+pub(super) struct Start {
+    /// The constant stiffness, N/m (bending: N·m per the model's own strain).
+    pub(super) stiffness: f64,
+    /// About the largest stiffness there is.
+    pub(super) largest: f64,
+    /// What is simulated beside the fitted curve: known, or assumed.
+    pub(super) known: Curves,
+    /// Components whose curve nobody measured: they have a constant stiffness.
+    pub(super) assumed: Vec<Component>,
+}
+
+/// Finds it from forces (equilibrium gap) or from shapes (Peirce's cantilever).
+///
+/// # Errors
+/// Measurements that no positive stiffness explains.
+pub(super) fn start(
+    plan: &Plan,
+    replicas: &[Replica],
+    knowledge: &Knowledge,
+    settings: &Settings,
+) -> Result<Start> {
+    let stiffness = match plan.objective {
+        Objective::Forces => from_forces(plan, replicas, settings)?,
+        Objective::Positions => from_shapes(plan, replicas)?,
+    };
+    let mut known = knowledge.without(&plan.fitted).curves().clone();
+    let mut assumed = Vec::new();
+    for &component in &plan.components {
+        if plan.fitted.contains(&component) || known.get(component).is_some() {
+            continue;
+        }
+        let negative = settings.model.negative_strain(component, settings.compression);
+        let constant = assumption(plan, replicas, component, stiffness);
+        known.set(component, StiffnessCurve::constant(constant, negative).map_err(mechanics(plan))?);
+        assumed.push(component);
+    }
+    let largest = match plan.objective {
+        Objective::Forces => largest_from_forces(plan, replicas, stiffness, &known, settings)?,
+        Objective::Positions => stiffness,
+    };
+    Ok(Start { stiffness: stiffness * settings.start_factor, largest, known, assumed })
+}
+
+/// What takes the place of a curve that is not known.
+fn assumption(plan: &Plan, replicas: &[Replica], component: Component, stiffness: f64) -> f64 {
+    // Across a strip, and for the other bending: as the fitted one. It hardly matters.
+    if component.is_bending() || plan.fitted[0].is_stretch() {
+        return stiffness;
+    }
+    // A membrane that hardly gives under its own weight, or under the forces of shear.
+    let weight = replicas
+        .iter()
+        .map(|replica| replica.weight.norm() * replica.specimen.grid.width.max(replica.specimen.grid.height))
+        .fold(0.0, f64::max);
+    let sheared = if plan.fitted[0] == Component::Shear { 100.0 * stiffness } else { 0.0 };
+    let stretch = f64::max(2000.0 * weight, sheared);
+    if component.is_stretch() { stretch } else { 0.1 * stretch }
+}
+
+/// The mean stiffness that balances the clip forces on the blended shapes, if the fitted curve bore all the load.
+fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result<f64> {
+    let range = blended_range(plan, replicas);
+    let frames = replicas.iter().flat_map(|replica| &replica.frames);
+    let extension = frames.map(|frame| frame.extension).fold(0.0, f64::max);
+    let name = plan.name();
+    if range < 0.1 * extension {
+        return Err(unfit(
+            replicas,
+            format!("an extension or a shear angle of {extension:.2e}, and {name} of {range:.2e}"),
+            "a pull along the yarns that the test's kind names: check kind, and vt in mesh.obj",
+        ));
+    }
+    let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
+    let one = StiffnessCurve::constant(1.0, negative).map_err(mechanics(plan))?;
+    let mean = gap::start(replicas, &plan.fitted, &one, &Curves::default(), &Domain::everywhere(1))[0];
+    if !(mean > 0.0) {
+        return Err(unfit(
+            replicas,
+            format!("clip forces that make a stiffness of {mean:.3e} N/m"),
+            "the force that the cords exert on each clip, outward where the specimen is stretched: check its sign",
+        ));
+    }
+    Ok(mean)
+}
+
+/// The largest control value of a curve with all its points on the blended shapes.
+fn largest_from_forces(
+    plan: &Plan,
+    replicas: &[Replica],
+    mean: f64,
+    known: &Curves,
+    settings: &Settings,
+) -> Result<f64> {
+    let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
+    let points = settings.most_points();
+    let strains = equidistant(points, blended_range(plan, replicas));
+    let fine = StiffnessCurve::new(strains, vec![mean; points], negative).map_err(mechanics(plan))?;
+    let positive = domain(&fine, Constraints::ControlPoints, 0.0).map_err(mechanics(plan))?;
+    Ok(gap::start(replicas, &plan.fitted, &fine, known, &positive).amax().max(mean))
+}
+
+/// The largest strain on the blended shapes of all frames.
+fn blended_range(plan: &Plan, replicas: &[Replica]) -> f64 {
+    let odd = !plan.fitted[0].is_stretch();
+    replicas
+        .iter()
+        .flat_map(|replica| replica.frames.iter().map(move |frame| (replica, frame)))
+        .flat_map(|(replica, frame)| {
+            plan.fitted.iter().flat_map(move |&c| replica.cloth(frame).strains(c, &frame.start))
+        })
+        .fold(f64::MIN_POSITIVE, |largest, [strain, _]| largest.max(if odd { strain.abs() } else { strain }))
+}
+
+/// The median over all frames of the stiffness that Peirce's formula gives.
+fn from_shapes(plan: &Plan, replicas: &[Replica]) -> Result<f64> {
+    let mut found: Vec<f64> = Vec::new();
+    for replica in replicas {
+        for frame in &replica.frames {
+            let bending = replica.cloth(frame).bending();
+            let rolled = plan.fitted.iter().find_map(|&component| bending?.rolled(component));
+            if let (Some(rolled), Some([rigidity, curvature])) = (rolled, replica.peirce(frame)) {
+                let stress = rigidity * curvature / rolled.lever(curvature);
+                found.push(stress / rolled.strain(curvature));
+            }
+        }
+    }
+    found.retain(|stiffness| stiffness.is_finite() && *stiffness > 0.0);
+    found.sort_by(f64::total_cmp);
+    found.get(found.len() / 2).copied().ok_or_else(|| {
+        unfit(
+            replicas,
+            "no overhang that sags under its weight".into(),
+            "gravity_m_s2 that is not zero, and cloth that hangs over the edge",
+        )
+    })
+}
