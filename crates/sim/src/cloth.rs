@@ -13,7 +13,7 @@ use crate::linear::{Pattern, order};
 use crate::load::{Held, lumped_masses};
 use crate::material::{Component, Curves, Model};
 use crate::membrane::Membrane;
-use crate::mesh::Mesh;
+use crate::mesh::{Edge, Mesh};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
@@ -48,6 +48,8 @@ pub struct Cloth {
     clips: usize,
     clip_of: Vec<Option<usize>>,
     planar: bool,
+    /// Mean length of the rest mesh's edges, m.
+    mean_edge: f64,
     /// Index into stacked coordinates of every unknown.
     unknowns: Vec<usize>,
     pattern: Pattern,
@@ -116,6 +118,7 @@ impl Cloth {
             clips,
             clip_of,
             planar,
+            mean_edge: mean_edge(mesh)?,
             unknowns,
             pattern,
             targets,
@@ -269,6 +272,10 @@ impl Cloth {
         self.planar
     }
 
+    pub(crate) fn mean_edge(&self) -> f64 {
+        self.mean_edge
+    }
+
     /// Weight of a node, N.
     pub(crate) fn weight(&self, node: usize) -> f64 {
         self.weights.get(node).map_or(0.0, Vector3::norm)
@@ -319,6 +326,12 @@ fn visit(membrane: &Membrane, bending: Option<&Bending>, planar: bool, pass: &mu
         Some(Bending::DiscreteShells(elements)) => pass.visit::<4, 3, 1, _>(1, elements),
         None => {}
     }
+}
+
+fn mean_edge(mesh: &Mesh) -> Result<f64> {
+    let edges = mesh.edges()?;
+    let length = |edge: &Edge| (mesh.positions[edge.ends[1]] - mesh.positions[edge.ends[0]]).norm();
+    Ok(edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64)
 }
 
 fn check(problem: &Problem<'_>) -> Result<()> {

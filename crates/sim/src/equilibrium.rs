@@ -3,7 +3,8 @@
 //! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
 //! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
 //! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
-//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort.
+//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. A balance that is not
+//! stable is left for the lower of the two states beside it.
 //!
 //! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
 
@@ -13,6 +14,8 @@ use crate::linear::Factor;
 use crate::material::Curves;
 use nalgebra::Vector3;
 
+mod escape;
+
 /// How equilibria are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -20,13 +23,20 @@ pub struct Settings {
     pub method: Method,
     /// When a state counts as balanced.
     pub tolerance: Tolerance,
-    /// Most iterations of one solve; default 200.
+    /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them.
     pub max_iterations: usize,
+    /// Leave an unstable state for one of lower energy; default true.
+    pub escape: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { method: Method::MixedNewton, tolerance: Tolerance::Relative(1e-6), max_iterations: 200 }
+        Self {
+            method: Method::MixedNewton,
+            tolerance: Tolerance::Relative(1e-6),
+            max_iterations: 200,
+            escape: true,
+        }
     }
 }
 
@@ -90,6 +100,9 @@ pub enum Limit {
 pub struct Equilibrium {
     /// How it ended.
     pub status: Status,
+    /// An unstable balance was met and left: the cloth bifurcates near here, so that another shape, and other
+    /// sensitivities, are as good.
+    pub escaped: bool,
     /// Which limit the imbalance is measured against.
     pub limit: Limit,
     /// Total energy, J.
@@ -98,9 +111,9 @@ pub struct Equilibrium {
     pub imbalance: f64,
     /// What it had to come below, N.
     pub tolerance: f64,
-    /// Newton steps taken.
+    /// Newton steps taken, on all sides of states that were left.
     pub iterations: usize,
-    /// Factorisations made, the one that checks stability included.
+    /// Factorisations made, those that check stability included.
     pub factorisations: usize,
 }
 
@@ -121,6 +134,9 @@ const NONMONOTONE_STEPS: usize = 40;
 /// A stiffness below this share of the mean is one of rounding: the matrix is singular.
 const SINGULAR: f64 = 1e-14;
 
+/// So many unstable states in a row are left.
+const ESCAPES: usize = 3;
+
 /// A factor is used again while each step with it leaves less than this share of the imbalance.
 const CHORD_CONTRACTION: f64 = 0.25;
 
@@ -139,6 +155,8 @@ pub struct Solver<'a> {
     mixed: Vec<f64>,
     /// Imbalance after the last accepted step over that before.
     contraction: f64,
+    /// μ of the factor, N/m: it is that of the matrix + μI.
+    shift: f64,
 }
 
 impl<'a> Solver<'a> {
@@ -158,6 +176,7 @@ impl<'a> Solver<'a> {
             reduced: vec![0.0; cloth.unknowns()],
             mixed: Vec::new(),
             contraction: 1.0,
+            shift: 0.0,
         }
     }
 
@@ -173,33 +192,15 @@ impl<'a> Solver<'a> {
     pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
         let before = self.factor.count;
-        let mut iterations = 0;
-        let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
-        // An angle at a collapsed wing has a finite energy and forces that are not.
-        let finite = energy.is_finite() && norm_of(&self.gradient, self.cloth).is_finite();
-        let mut status = if finite { Status::Stalled } else { Status::NotFinite };
-        if status == Status::Stalled && settings.method == Method::MixedNewton {
-            status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
-        }
-        if status == Status::Stalled {
-            status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
-        }
-        if status != Status::NotFinite {
-            let stable = self.factorise_true_hessian(curves, x);
-            if status == Status::Converged && !stable {
-                status = Status::Unstable;
+        self.mixed.clear();
+        let mut found = self.minimise(curves, x, settings);
+        for _ in 0..ESCAPES {
+            let unstable = found.status == Status::Unstable;
+            if !(settings.escape && unstable && self.leave(curves, x, settings, &mut found)) {
+                break;
             }
         }
-        let (imbalance, tolerance, limit) = self.balance(x, settings);
-        Equilibrium {
-            status,
-            limit,
-            energy,
-            imbalance,
-            tolerance,
-            iterations,
-            factorisations: self.factor.count - before,
-        }
+        Equilibrium { factorisations: self.factor.count - before, ..found }
     }
 
     /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
@@ -223,6 +224,38 @@ impl<'a> Solver<'a> {
     /// The gradient at the last solve's state, N, 3 a node.
     pub fn gradient(&self) -> &[f64] {
         &self.gradient
+    }
+
+    /// A balanced state downhill, stable or not. The strains in `mixed` are those of the first matrix, if there are any.
+    fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
+        let before = self.factor.count;
+        let mut iterations = 0;
+        let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        // An angle at a collapsed wing has a finite energy and forces that are not.
+        let finite = energy.is_finite() && norm_of(&self.gradient, self.cloth).is_finite();
+        let mut status = if finite { Status::Stalled } else { Status::NotFinite };
+        if status == Status::Stalled && settings.method == Method::MixedNewton {
+            status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
+        }
+        if status == Status::Stalled {
+            status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
+        }
+        if status != Status::NotFinite {
+            let stable = self.factorise_true_hessian(curves, x);
+            if status == Status::Converged && !stable {
+                status = Status::Unstable;
+            }
+        }
+        let (imbalance, tolerance, limit) = self.balance(x, settings);
+        let factorisations = self.factor.count - before;
+        let escaped = false;
+        Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
+    }
+
+    /// Gradient and factor at a state that another minimisation found.
+    fn refresh(&mut self, curves: &Curves, x: &[f64]) {
+        self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        self.factorise_true_hessian(curves, x);
     }
 
     /// The imbalance, what it must come below, and by which limit.
@@ -278,7 +311,6 @@ impl<'a> Solver<'a> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
-        self.mixed.clear();
         while !self.is_balanced(x, settings) {
             if *iterations >= settings.max_iterations {
                 return Status::IterationLimit;
@@ -353,6 +385,7 @@ impl<'a> Solver<'a> {
         diagonal.iter().for_each(|&place| self.values[place] += shift);
         let made = self.factor.factorise(self.cloth.pattern(), &self.values[..self.cloth.entries()]);
         diagonal.iter().for_each(|&place| self.values[place] -= shift);
+        self.shift = shift;
         made.is_ok()
     }
 
