@@ -14,6 +14,7 @@ use crate::linear::Factor;
 use crate::material::Curves;
 use nalgebra::Vector3;
 
+mod drive;
 mod escape;
 
 /// How equilibria are found.
@@ -191,16 +192,8 @@ impl<'a> Solver<'a> {
     /// If `x` has another length than the cloth has coordinates.
     pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
-        let before = self.factor.count;
         self.mixed.clear();
-        let mut found = self.minimise(curves, x, settings);
-        for _ in 0..ESCAPES {
-            let unstable = found.status == Status::Unstable;
-            if !(settings.escape && unstable && self.leave(curves, x, settings, &mut found)) {
-                break;
-            }
-        }
-        Equilibrium { factorisations: self.factor.count - before, ..found }
+        self.settle(curves, x, settings)
     }
 
     /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
@@ -226,7 +219,20 @@ impl<'a> Solver<'a> {
         &self.gradient
     }
 
-    /// A balanced state downhill, stable or not. The strains in `mixed` are those of the first matrix, if there are any.
+    /// A solve whose first matrix uses the strains in `mixed`, if there are any.
+    fn settle(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
+        let before = self.factor.count;
+        let mut found = self.minimise(curves, x, settings);
+        for _ in 0..ESCAPES {
+            let unstable = found.status == Status::Unstable;
+            if !(settings.escape && unstable && self.leave(curves, x, settings, &mut found)) {
+                break;
+            }
+        }
+        Equilibrium { factorisations: self.factor.count - before, ..found }
+    }
+
+    /// A balanced state downhill, stable or not.
     fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         let before = self.factor.count;
         let mut iterations = 0;
@@ -252,7 +258,7 @@ impl<'a> Solver<'a> {
         Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
     }
 
-    /// Gradient and factor at a state that another minimisation found.
+    /// Gradient and factor at a state that the last minimisation did not end in.
     fn refresh(&mut self, curves: &Curves, x: &[f64]) {
         self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
         self.factorise_true_hessian(curves, x);
