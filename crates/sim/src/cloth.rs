@@ -6,14 +6,14 @@
 use crate::bending::Bending;
 use crate::element::{
     Curvature, Element, EnergyPass, GradientPass, HessianPass, ParameterPass, Pass, PredictedStrainPass,
-    StrainPass, lower_entries,
+    StrainPass, gather, lower_entries,
 };
 use crate::error::{Error, Result};
 use crate::linear::{Pattern, order};
 use crate::load::{Held, lumped_masses};
 use crate::material::{Component, Curves, Model};
 use crate::membrane::Membrane;
-use crate::mesh::Mesh;
+use crate::mesh::{Edge, Mesh};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
@@ -48,6 +48,10 @@ pub struct Cloth {
     clips: usize,
     clip_of: Vec<Option<usize>>,
     planar: bool,
+    /// Of the rest mesh, whatever the model.
+    triangles: Vec<[usize; 3]>,
+    /// Mean length of the rest mesh's edges, m.
+    mean_edge: f64,
     /// Index into stacked coordinates of every unknown.
     unknowns: Vec<usize>,
     pattern: Pattern,
@@ -116,6 +120,8 @@ impl Cloth {
             clips,
             clip_of,
             planar,
+            triangles: mesh.triangles.clone(),
+            mean_edge: mean_edge(mesh)?,
             unknowns,
             pattern,
             targets,
@@ -250,11 +256,19 @@ impl Cloth {
         let Some(Bending::DiscreteShells(hinges)) = &self.bending else { return false };
         hinges.iter().any(|hinge| {
             let angle = |x: &[f64]| {
-                hinge.strains(&crate::element::gather::<4, 3>(hinge.nodes, x))[0] * hinge.width
-                    + hinge.rest_angle
+                hinge.strains(&gather::<4, 3>(hinge.nodes, x))[0] * hinge.width + hinge.rest_angle
             };
             (angle(to) - angle(x)).abs() > std::f64::consts::PI
         })
+    }
+
+    /// True if a triangle turns over between two states of a planar problem.
+    pub(crate) fn turns_over(&self, x: &[f64], to: &[f64]) -> bool {
+        let faces_up = |x: &[f64], nodes: [usize; 3]| {
+            let [a, b, c] = gather::<3, 2>(nodes, x);
+            (b - a).perp(&(c - a)) > 0.0
+        };
+        self.planar && self.triangles.iter().any(|&nodes| faces_up(x, nodes) != faces_up(to, nodes))
     }
 
     pub(crate) fn pattern(&self) -> &Pattern {
@@ -267,6 +281,15 @@ impl Cloth {
 
     pub(crate) fn is_planar(&self) -> bool {
         self.planar
+    }
+
+    /// The clip that holds a node, if one does.
+    pub(crate) fn clip_of(&self, node: usize) -> Option<usize> {
+        self.clip_of[node]
+    }
+
+    pub(crate) fn mean_edge(&self) -> f64 {
+        self.mean_edge
     }
 
     /// Weight of a node, N.
@@ -319,6 +342,12 @@ fn visit(membrane: &Membrane, bending: Option<&Bending>, planar: bool, pass: &mu
         Some(Bending::DiscreteShells(elements)) => pass.visit::<4, 3, 1, _>(1, elements),
         None => {}
     }
+}
+
+fn mean_edge(mesh: &Mesh) -> Result<f64> {
+    let edges = mesh.edges()?;
+    let length = |edge: &Edge| (mesh.positions[edge.ends[1]] - mesh.positions[edge.ends[0]]).norm();
+    Ok(edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64)
 }
 
 fn check(problem: &Problem<'_>) -> Result<()> {

@@ -3,7 +3,8 @@
 //! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
 //! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
 //! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
-//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort.
+//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. A balance that is not
+//! stable is left for the lower of the two states beside it.
 //!
 //! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
 
@@ -13,6 +14,9 @@ use crate::linear::Factor;
 use crate::material::Curves;
 use nalgebra::Vector3;
 
+mod drive;
+mod escape;
+
 /// How equilibria are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -20,13 +24,20 @@ pub struct Settings {
     pub method: Method,
     /// When a state counts as balanced.
     pub tolerance: Tolerance,
-    /// Most iterations of one solve; default 200.
+    /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them.
     pub max_iterations: usize,
+    /// Leave an unstable state for one of lower energy; default true.
+    pub escape: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { method: Method::MixedNewton, tolerance: Tolerance::Relative(1e-6), max_iterations: 200 }
+        Self {
+            method: Method::MixedNewton,
+            tolerance: Tolerance::Relative(1e-6),
+            max_iterations: 200,
+            escape: true,
+        }
     }
 }
 
@@ -90,6 +101,9 @@ pub enum Limit {
 pub struct Equilibrium {
     /// How it ended.
     pub status: Status,
+    /// An unstable balance was met and left: the cloth bifurcates near here, so that another shape, and other
+    /// sensitivities, are as good.
+    pub escaped: bool,
     /// Which limit the imbalance is measured against.
     pub limit: Limit,
     /// Total energy, J.
@@ -98,9 +112,9 @@ pub struct Equilibrium {
     pub imbalance: f64,
     /// What it had to come below, N.
     pub tolerance: f64,
-    /// Newton steps taken.
+    /// Newton steps taken, on all sides of states that were left.
     pub iterations: usize,
-    /// Factorisations made, the one that checks stability included.
+    /// Factorisations made, those that check stability included.
     pub factorisations: usize,
 }
 
@@ -121,6 +135,9 @@ const NONMONOTONE_STEPS: usize = 40;
 /// A stiffness below this share of the mean is one of rounding: the matrix is singular.
 const SINGULAR: f64 = 1e-14;
 
+/// So many unstable states in a row are left.
+const ESCAPES: usize = 3;
+
 /// A factor is used again while each step with it leaves less than this share of the imbalance.
 const CHORD_CONTRACTION: f64 = 0.25;
 
@@ -139,6 +156,8 @@ pub struct Solver<'a> {
     mixed: Vec<f64>,
     /// Imbalance after the last accepted step over that before.
     contraction: f64,
+    /// μ of the factor, N/m: it is that of the matrix + μI.
+    shift: f64,
 }
 
 impl<'a> Solver<'a> {
@@ -158,6 +177,7 @@ impl<'a> Solver<'a> {
             reduced: vec![0.0; cloth.unknowns()],
             mixed: Vec::new(),
             contraction: 1.0,
+            shift: 0.0,
         }
     }
 
@@ -172,34 +192,8 @@ impl<'a> Solver<'a> {
     /// If `x` has another length than the cloth has coordinates.
     pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
-        let before = self.factor.count;
-        let mut iterations = 0;
-        let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
-        // An angle at a collapsed wing has a finite energy and forces that are not.
-        let finite = energy.is_finite() && norm_of(&self.gradient, self.cloth).is_finite();
-        let mut status = if finite { Status::Stalled } else { Status::NotFinite };
-        if status == Status::Stalled && settings.method == Method::MixedNewton {
-            status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
-        }
-        if status == Status::Stalled {
-            status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
-        }
-        if status != Status::NotFinite {
-            let stable = self.factorise_true_hessian(curves, x);
-            if status == Status::Converged && !stable {
-                status = Status::Unstable;
-            }
-        }
-        let (imbalance, tolerance, limit) = self.balance(x, settings);
-        Equilibrium {
-            status,
-            limit,
-            energy,
-            imbalance,
-            tolerance,
-            iterations,
-            factorisations: self.factor.count - before,
-        }
+        self.mixed.clear();
+        self.settle(curves, x, settings)
     }
 
     /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
@@ -223,6 +217,51 @@ impl<'a> Solver<'a> {
     /// The gradient at the last solve's state, N, 3 a node.
     pub fn gradient(&self) -> &[f64] {
         &self.gradient
+    }
+
+    /// A solve whose first matrix uses the strains in `mixed`, if there are any.
+    fn settle(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
+        let before = self.factor.count;
+        let mut found = self.minimise(curves, x, settings);
+        for _ in 0..ESCAPES {
+            let unstable = found.status == Status::Unstable;
+            if !(settings.escape && unstable && self.leave(curves, x, settings, &mut found)) {
+                break;
+            }
+        }
+        Equilibrium { factorisations: self.factor.count - before, ..found }
+    }
+
+    /// A balanced state downhill, stable or not.
+    fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
+        let before = self.factor.count;
+        let mut iterations = 0;
+        let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        // An angle at a collapsed wing has a finite energy and forces that are not.
+        let finite = energy.is_finite() && norm_of(&self.gradient, self.cloth).is_finite();
+        let mut status = if finite { Status::Stalled } else { Status::NotFinite };
+        if status == Status::Stalled && settings.method == Method::MixedNewton {
+            status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
+        }
+        if status == Status::Stalled {
+            status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
+        }
+        if status != Status::NotFinite {
+            let stable = self.factorise_true_hessian(curves, x);
+            if status == Status::Converged && !stable {
+                status = Status::Unstable;
+            }
+        }
+        let (imbalance, tolerance, limit) = self.balance(x, settings);
+        let factorisations = self.factor.count - before;
+        let escaped = false;
+        Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
+    }
+
+    /// Gradient and factor at a state that the last minimisation did not end in.
+    fn refresh(&mut self, curves: &Curves, x: &[f64]) {
+        self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        self.factorise_true_hessian(curves, x);
     }
 
     /// The imbalance, what it must come below, and by which limit.
@@ -278,7 +317,6 @@ impl<'a> Solver<'a> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
-        self.mixed.clear();
         while !self.is_balanced(x, settings) {
             if *iterations >= settings.max_iterations {
                 return Status::IterationLimit;
@@ -353,6 +391,7 @@ impl<'a> Solver<'a> {
         diagonal.iter().for_each(|&place| self.values[place] += shift);
         let made = self.factor.factorise(self.cloth.pattern(), &self.values[..self.cloth.entries()]);
         diagonal.iter().for_each(|&place| self.values[place] -= shift);
+        self.shift = shift;
         made.is_ok()
     }
 

@@ -85,7 +85,7 @@ pub enum Error {
         wing: usize,
     },
     /// A model that needs the regular grid was given another mesh.
-    #[error("{what} needs a regular grid; this mesh was not made as one")]
+    #[error("{what} needs a regular grid without nodes inside its cells; this mesh is not one")]
     NeedsGrid {
         /// What needs it.
         what: &'static str,

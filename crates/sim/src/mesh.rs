@@ -17,9 +17,15 @@ pub enum Diagonals {
     Backward,
     /// '/' and '\' in turn, as on a chessboard.
     Alternating,
+    /// Every cell by both, around a node at its centre.
+    ///
+    /// For strips cut on the bias: yarns that hardly stretch lock triangles without an edge along each yarn, and these
+    /// have one along both. Source: Hamila and Boisse 2013; Yu et al. 2006.
+    Crossed,
 }
 
-/// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`.
+/// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`. Crossed cells have
+/// their centres after all of these, row by row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// Nodes along x, at least 2.
@@ -61,33 +67,49 @@ impl Grid {
                 return Err(Error::InvalidValue { field, value, expected: "a positive length in metres" });
             }
         }
-        let [dx, dy] = self.cell();
-        let material: Vec<_> = (0..self.rows)
-            .flat_map(|row| {
-                (0..self.columns).map(move |column| Vector2::new(column as f64 * dx, row as f64 * dy))
-            })
-            .collect();
+        let material = self.nodes();
         let positions = material.iter().map(|p| Vector3::new(p.x, p.y, 0.0)).collect();
-        let mut triangles = Vec::with_capacity(2 * (self.columns - 1) * (self.rows - 1));
-        for row in 0..self.rows - 1 {
-            for column in 0..self.columns - 1 {
-                let [low, right] = [self.node(column, row), self.node(column + 1, row)];
-                let [up, high] = [self.node(column, row + 1), self.node(column + 1, row + 1)];
-                let forward = match self.diagonals {
-                    Diagonals::Forward => true,
-                    Diagonals::Backward => false,
-                    Diagonals::Alternating => (column + row) % 2 == 0,
-                };
-                if forward {
-                    triangles.extend([[low, right, high], [low, high, up]]);
-                } else {
-                    triangles.extend([[low, right, up], [right, high, up]]);
-                }
-            }
-        }
+        let cells = (0..self.rows - 1).flat_map(|row| (0..self.columns - 1).map(move |column| [column, row]));
+        let triangles = cells.flat_map(|cell| self.triangles(cell)).collect();
         let mut mesh = Mesh::new(positions, material, triangles)?;
         mesh.grid = Some(*self);
         Ok(mesh)
+    }
+
+    /// Where the nodes are, m.
+    fn nodes(&self) -> Vec<Vector2<f64>> {
+        let [dx, dy] = self.cell();
+        let places = |columns: usize, rows: usize, offset: f64| {
+            (0..rows).flat_map(move |row| {
+                (0..columns).map(move |column| {
+                    Vector2::new((column as f64 + offset) * dx, (row as f64 + offset) * dy)
+                })
+            })
+        };
+        let centres = if self.diagonals == Diagonals::Crossed { self.rows - 1 } else { 0 };
+        places(self.columns, self.rows, 0.0).chain(places(self.columns - 1, centres, 0.5)).collect()
+    }
+
+    /// The triangles of a cell.
+    fn triangles(&self, [column, row]: [usize; 2]) -> Vec<[usize; 3]> {
+        let [low, right] = [self.node(column, row), self.node(column + 1, row)];
+        let [up, high] = [self.node(column, row + 1), self.node(column + 1, row + 1)];
+        let forward = match self.diagonals {
+            Diagonals::Forward => true,
+            Diagonals::Backward => false,
+            Diagonals::Alternating => (column + row) % 2 == 0,
+            Diagonals::Crossed => {
+                let centre = self.columns * self.rows + row * (self.columns - 1) + column;
+                return [[low, right], [right, high], [high, up], [up, low]]
+                    .map(|[a, b]| [a, b, centre])
+                    .into();
+            }
+        };
+        if forward {
+            vec![[low, right, high], [low, high, up]]
+        } else {
+            vec![[low, right, up], [right, high, up]]
+        }
     }
 }
 
@@ -265,6 +287,8 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde::Deserialize;
+    use serde::de::IntoDeserializer;
 
     type Change<'a> = &'a dyn Fn(&mut Vec<Vector3<f64>>, &mut Vec<Vector2<f64>>, &mut Vec<[usize; 3]>);
     type Parts = (Vec<Vector3<f64>>, Vec<Vector2<f64>>, Vec<[usize; 3]>);
@@ -292,6 +316,22 @@ mod tests {
         let area: f64 = (0..mesh.triangles.len()).map(|t| mesh.double_area(t) / 2.0).sum();
         assert!((area - 6.0).abs() < 1e-12);
         assert!(mesh.parts().iter().all(|&part| part == 0));
+    }
+
+    #[test]
+    fn crossed_cells_have_a_node_at_their_centre() {
+        let grid = Grid { columns: 4, rows: 3, width: 3.0, height: 1.0, diagonals: Diagonals::Crossed };
+        let mesh = grid.mesh().unwrap();
+        assert_eq!((mesh.len(), mesh.triangles.len()), (4 * 3 + 3 * 2, 4 * 3 * 2));
+        assert_eq!(mesh.edges().unwrap().len(), 3 * 3 + 4 * 2 + 4 * 6);
+        // Grid nodes first, then the centres row by row.
+        assert_eq!(mesh.material[grid.node(3, 1)], Vector2::new(3.0, 0.5));
+        assert_eq!(mesh.material[4 * 3 + 4], Vector2::new(1.5, 0.75));
+        // Every triangle is a quarter of a cell, wound like the others.
+        assert!((0..24).all(|triangle| (mesh.double_area(triangle) - 0.25).abs() < 1e-15));
+        assert!(mesh.parts().iter().all(|&part| part == 0));
+        let name = IntoDeserializer::<serde::de::value::Error>::into_deserializer("crossed");
+        assert_eq!(Diagonals::deserialize(name), Ok(Diagonals::Crossed));
     }
 
     #[test]

@@ -11,6 +11,7 @@
 use crate::cloth::{Cloth, Problem};
 use crate::curve::StiffnessCurve;
 use crate::error::Result;
+use crate::linear::irregular;
 use crate::load::Held;
 use crate::material::{Component, Compression, Curves, Model};
 use crate::mesh::{Diagonals, Grid, Mesh};
@@ -99,7 +100,7 @@ impl Sample {
         let held: Vec<usize> = self.held.iter().map(|held| held.node).collect();
         for (node, x) in self.start.chunks_exact_mut(3).enumerate().filter(|(node, _)| !held.contains(node)) {
             for i in 0..if self.planar { 2 } else { 3 } {
-                x[i] += size * jitter(3 * node + i);
+                x[i] += size * irregular(3 * node + i);
             }
         }
     }
@@ -110,11 +111,6 @@ impl Sample {
             (0..self.mesh.triangles.len()).map(|triangle| 0.5 * self.mesh.double_area(triangle)).sum();
         self.gravity * (self.areal_density * area)
     }
-}
-
-/// Irregular numbers in [−1, 1], the same on every machine: multiples of the golden ratio.
-fn jitter(index: usize) -> f64 {
-    2.0 * ((index + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0
 }
 
 /// Curves of constant stiffness.
@@ -203,7 +199,8 @@ pub fn patch(model: Model, map: Matrix3x2<f64>) -> Result<Sample> {
         for node in 0..mesh.len() {
             let m = mesh.material[node];
             if inside(m.x) && inside(m.y) {
-                let moved = m + Vector2::new(jitter(2 * node), jitter(2 * node + 1)) * (0.2 * SIDE / 6.0);
+                let moved =
+                    m + Vector2::new(irregular(2 * node), irregular(2 * node + 1)) * (0.2 * SIDE / 6.0);
                 mesh.material[node] = moved;
                 mesh.positions[node] = moved.push(0.0);
             }

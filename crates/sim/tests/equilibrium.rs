@@ -54,20 +54,119 @@ fn a_clip_carries_the_weight() {
     }
 }
 
+/// A flat sheet, 3 % shorter between its clips than at rest.
+fn compressed(model: Model) -> Sample {
+    let curves = samples::fabric(model, [300.0, 30.0, 1e-6]).expect("the sample is valid");
+    let mut sample = Sample::at_rest(
+        samples::square(9, Diagonals::Alternating).expect("the sample is valid"),
+        model,
+        curves,
+    );
+    sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.999 * SIDE).then_some(1) });
+    sample.place(|p| Vector3::new(0.97 * p.x, p.y, p.z));
+    sample
+}
+
+/// The largest distance from the plane z = 0.
+fn height(x: &[f64]) -> f64 {
+    x.iter().skip(2).step_by(3).fold(0.0, |highest, z| highest.max(z.abs()))
+}
+
 #[test]
 fn a_flat_sheet_in_compression_is_unstable_and_buckles_when_touched() {
     for model in [Model::Stvk, Model::SoftConstraint] {
-        let curves = samples::fabric(model, [300.0, 30.0, 1e-6]).unwrap();
-        let mut sample = Sample::at_rest(samples::square(9, Diagonals::Alternating).unwrap(), model, curves);
-        sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.999 * SIDE).then_some(1) });
-        sample.place(|p| Vector3::new(0.97 * p.x, p.y, p.z));
-        let (flat, _) = solve(&sample, &Settings::default());
+        let mut sample = compressed(model);
+        let (flat, _) = solve(&sample, &Settings { escape: false, ..Settings::default() });
         assert_eq!((flat.status, flat.iterations), (Status::Unstable, 0), "{model}: {flat:?}");
         sample.perturb(1e-5);
         let (buckled, x) = solve(&sample, &Settings::default());
         assert!(buckled.converged() && buckled.energy < 0.2 * flat.energy, "{model}: {buckled:?}");
-        assert!(x.iter().skip(2).step_by(3).any(|z| z.abs() > 0.05 * SIDE));
+        assert!(!buckled.escaped && height(&x) > 0.05 * SIDE, "{model}: {buckled:?}");
     }
+}
+
+/// Mirrored starts reach mirrored states, and what leaves the flat state by itself is one of the two.
+#[test]
+fn a_flat_sheet_in_compression_has_two_branches() {
+    let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
+    let mirror = |x: &mut [f64]| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = -*z);
+    for model in [Model::Stvk, Model::SoftConstraint] {
+        let sample = compressed(model);
+        let (left, x) = solve(&sample, &settings);
+        println!("{model}: {left:?}");
+        let mut up = sample.clone();
+        // Towards the state that was found, so that all three share the same number of waves.
+        up.start.iter_mut().zip(&x).for_each(|(start, x)| *start += 0.1 * (x - *start));
+        let mut down = up.clone();
+        mirror(&mut down.start);
+        let ((upper, above), (lower, mut below)) = (solve(&up, &settings), solve(&down, &settings));
+        mirror(&mut below);
+        assert!(upper.converged() && lower.converged() && !upper.escaped, "{model}: {upper:?} {lower:?}");
+        assert!((upper.energy / lower.energy - 1.0).abs() < 1e-12, "{model}: {upper:?} {lower:?}");
+        assert!((upper.energy / left.energy - 1.0).abs() < 1e-8, "{model}: {upper:?} {left:?}");
+        assert!(difference(&above, &below) < 1e-9 * SIDE, "{model}: {:e}", difference(&above, &below));
+        assert!(difference(&above, &x) < 1e-6 * SIDE, "{model}: {:e}", difference(&above, &x));
+    }
+}
+
+/// Flat, in balance and unstable; in the plane, a chain of yarns in compression.
+#[test]
+fn what_is_unstable_is_left_and_flagged() {
+    let frame =
+        |model| Sample { start: flat_frame(model), ..samples::picture_frame(model, 13, 0.2).unwrap() };
+    let samples = Model::ALL
+        .into_iter()
+        .map(|model| (model, frame(model)))
+        .chain([Model::Stvk, Model::SoftConstraint].map(|model| (model, compressed(model))))
+        .chain(Model::ALL.map(|model| (model, crushed(model))));
+    for (model, sample) in samples {
+        let (stays, _) = solve(&sample, &Settings { escape: false, ..Settings::default() });
+        assert_eq!((stays.status, stays.escaped), (Status::Unstable, false), "{model}: {stays:?}");
+        let cloth = sample.cloth().unwrap();
+        let mut solver = Solver::new(&cloth);
+        let mut x = sample.start.clone();
+        let found = solver.solve(&sample.curves, &mut x, &Settings::default());
+        println!(
+            "{model}: {} → {} J, height {}; {} steps, {} factorisations",
+            stays.energy,
+            found.energy,
+            height(&x),
+            found.iterations,
+            found.factorisations
+        );
+        assert!(found.converged() && found.escaped, "{model}: {found:?}");
+        assert!(found.energy < 0.99 * stays.energy && found.iterations > stays.iterations);
+        // Gradient and factor are those of the state returned.
+        let (gradient, forces) = (solver.gradient().to_vec(), solver.clip_forces());
+        let mut right: Vec<f64> = (0..cloth.unknowns()).map(|i| (i as f64).sin()).collect();
+        let mut again = right.clone();
+        solver.solve_linear(&mut right);
+        let stable = solver.solve(&sample.curves, &mut x, &Settings::default());
+        assert!(stable.converged() && !stable.escaped && stable.factorisations == 1, "{model}: {stable:?}");
+        assert_eq!((gradient, forces), (solver.gradient().to_vec(), solver.clip_forces()));
+        solver.solve_linear(&mut again);
+        assert_eq!(right, again, "{model}");
+    }
+}
+
+/// The picture frame's start without its irregularity.
+fn flat_frame(model: Model) -> Vec<f64> {
+    let mut sample = samples::picture_frame(model, 13, 0.2).expect("the sample is valid");
+    sample.perturb(-1e-5);
+    sample.start
+}
+
+/// Compressed along weft to a third in the plane, with so little shear that the yarns buckle there.
+fn crushed(model: Model) -> Sample {
+    let mut sample =
+        samples::patch(model, Matrix3x2::new(0.3, 0.0, 0.0, 1.0, 0.0, 0.0)).expect("the sample is valid");
+    sample.curves = samples::linear_curves(
+        model,
+        &[(Component::StretchWeft, 300.0), (Component::StretchWarp, 300.0), (Component::Shear, 1.0)],
+    )
+    .expect("the sample is valid");
+    sample.planar = true;
+    sample
 }
 
 /// Compressed along weft to a tenth, all around, in the plane. Shear and warp are stiff enough that

@@ -3,7 +3,7 @@
 use crate::element::{Block, Element, Point};
 use crate::error::{Error, Result};
 use crate::material::Component;
-use crate::mesh::{Grid, Mesh};
+use crate::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::Vector2;
 
 /// A spring between two nodes.
@@ -102,7 +102,7 @@ struct Family {
 /// * `components` — the membrane components wanted; others get no springs
 ///
 /// # Errors
-/// The mesh is no regular grid.
+/// The mesh is no regular grid, or its cells are crossed.
 pub fn ring_one(mesh: &Mesh, components: &[Component]) -> Result<Vec<Spring>> {
     let of = |direction| match direction {
         Direction::Weft => Component::StretchWeft,
@@ -117,7 +117,7 @@ pub fn ring_one(mesh: &Mesh, components: &[Component]) -> Result<Vec<Spring>> {
 /// * `components` — the bending components wanted; others get no springs
 ///
 /// # Errors
-/// The mesh is no regular grid.
+/// The mesh is no regular grid, or its cells are crossed.
 pub fn ring_two(mesh: &Mesh, components: &[Component]) -> Result<Vec<Spring>> {
     let of = |direction| match direction {
         Direction::Weft => Component::BendWeft,
@@ -134,7 +134,8 @@ fn springs(
     component_of: impl Fn(Direction) -> Component,
     components: &[Component],
 ) -> Result<Vec<Spring>> {
-    let grid = mesh.grid.ok_or(Error::NeedsGrid { what })?;
+    let plain = mesh.grid.filter(|grid| grid.diagonals != Diagonals::Crossed);
+    let grid = plain.ok_or(Error::NeedsGrid { what })?;
     let families: Vec<Family> =
         steps.into_iter().map(|step| family(mesh, &grid, step, &component_of)).collect();
     // Families of one component share the cloth between them, so that each component covers it once: both diagonals

@@ -1,0 +1,209 @@
+//! Load steps: what holds the cloth moves far, and the cloth follows in as few steps as that takes.
+
+use super::{Equilibrium, Settings, Solver, Status};
+use crate::cloth::Cloth;
+use crate::material::Curves;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use std::collections::BTreeMap;
+
+/// A step that is not balanced after so many iterations was too long.
+const ITERATIONS: usize = 40;
+
+/// The shortest step, as a share of the whole way.
+const SHORTEST: f64 = 1.0 / 256.0;
+
+/// How far the held nodes are moved, as a share of the mean edge, to see which forces that causes.
+const PROBE: f64 = 1e-6;
+
+impl Solver<'_> {
+    /// Follows an equilibrium while what holds it moves.
+    ///
+    /// The first step is the whole way. One that does not end in balance within 40 iterations is halved, and so is one
+    /// in which a hinge jumps across half a turn or, in the plane, a triangle turns over; after a success the next is
+    /// twice as long. Every step starts from −K⁻¹ K_h Δx_h, the first-order answer of the free nodes to the motion Δx_h
+    /// of the held ones. Every clip moves rigidly as far as it can: it turns as steadily as it travels.
+    ///
+    /// * `x` — as for [`Solver::solve`]; near an equilibrium for where its held nodes are now
+    /// * `target` — where the held nodes shall be, 3 stacked coordinates a node, m; those of free nodes are ignored
+    ///
+    /// Where a step of 1/256 of the way fails too, `x` is the last balanced state on the way, the status says how the
+    /// last step failed, and the other figures are those of `x`. The counters include all steps, and the steps may
+    /// leave unstable states as a solve may.
+    ///
+    /// # Panics
+    /// If `x` or `target` has another length than the cloth has coordinates.
+    pub fn drive(
+        &mut self,
+        curves: &Curves,
+        x: &mut [f64],
+        target: &[f64],
+        settings: &Settings,
+    ) -> Equilibrium {
+        assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
+        let before = self.factor.count;
+        let clips = motions(self.cloth, x, target);
+        let limited = Settings { max_iterations: settings.max_iterations.min(ITERATIONS), ..*settings };
+        let (mut done, mut length) = (0.0, 1.0);
+        let (mut status, mut iterations, mut escaped) = (Status::Stalled, 0, false);
+        self.refresh(curves, x);
+        while done < 1.0 && length >= SHORTEST {
+            let mut trial = x.to_vec();
+            clips.iter().for_each(|clip| clip.place(done + length, &mut trial));
+            self.predict(curves, x, &mut trial);
+            let found = self.settle(curves, &mut trial, &limited);
+            iterations += found.iterations;
+            status = found.status;
+            let balanced = matches!(status, Status::Converged | Status::Unstable);
+            if balanced && !self.cloth.hinge_jumps(x, &trial) && !self.cloth.turns_over(x, &trial) {
+                x.copy_from_slice(&trial);
+                escaped |= found.escaped;
+                done += length;
+                length = (2.0 * length).min(1.0 - done);
+            } else {
+                status = if balanced { Status::Stalled } else { status };
+                self.refresh(curves, x);
+                length *= 0.5;
+            }
+        }
+        let energy = self.cloth.energy(curves, x);
+        let (imbalance, tolerance, limit) = self.balance(x, settings);
+        let factorisations = self.factor.count - before;
+        Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
+    }
+
+    /// Moves the free nodes of a state whose held nodes have moved away from `x`, to first order. The gradient and the
+    /// factor are those of `x`. The strains that this step predicts are kept for the first matrix.
+    fn predict(&mut self, curves: &Curves, x: &[f64], state: &mut [f64]) {
+        let unknowns = self.cloth.unknown_coordinates();
+        self.step.iter_mut().zip(state.iter().zip(x)).for_each(|(d, (to, from))| *d = to - from);
+        let farthest = self.step.iter().fold(0.0, |largest: f64, d| largest.max(d.abs()));
+        let probe = PROBE * self.cloth.mean_edge() / farthest.max(f64::MIN_POSITIVE);
+        self.try_step(curves, x, probe);
+        for (value, &coordinate) in self.reduced.iter_mut().zip(unknowns) {
+            *value = (self.gradient[coordinate] - self.trial_gradient[coordinate]) / probe;
+        }
+        self.factor.solve(self.cloth.pattern(), &mut self.reduced);
+        for (value, &coordinate) in self.reduced.iter().zip(unknowns) {
+            self.step[coordinate] = *value;
+            state[coordinate] += value;
+        }
+        self.cloth.predicted_strains(x, &self.step, &mut self.mixed);
+    }
+}
+
+/// The motion of the nodes that one clip holds: rigid, and what that leaves over.
+struct Motion {
+    /// Where the middle is at the start, m.
+    middle: Vector3<f64>,
+    /// Where it goes from there, m.
+    travel: Vector3<f64>,
+    /// Axis times angle, rad.
+    turn: Vector3<f64>,
+    nodes: Vec<Follower>,
+}
+
+/// A node that follows a clip, m.
+struct Follower {
+    node: usize,
+    /// From the clip's middle at the start.
+    arm: Vector3<f64>,
+    /// From where the clip takes it to where it shall be.
+    rest: Vector3<f64>,
+    target: Vector3<f64>,
+}
+
+/// The motions of all clips, and one of what is held by none.
+fn motions(cloth: &Cloth, x: &[f64], target: &[f64]) -> Vec<Motion> {
+    let mut free = vec![false; cloth.nodes()];
+    cloth.unknown_coordinates().iter().for_each(|coordinate| free[coordinate / 3] = true);
+    let mut clips: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+    for node in (0..cloth.nodes()).filter(|&node| !free[node]) {
+        clips.entry(cloth.clip_of(node)).or_default().push(node);
+    }
+    clips.values().map(|nodes| Motion::new(nodes, x, target)).collect()
+}
+
+impl Motion {
+    fn new(nodes: &[usize], x: &[f64], target: &[f64]) -> Self {
+        let at = |x: &[f64], node: usize| Vector3::from_column_slice(&x[3 * node..3 * node + 3]);
+        let mean =
+            |x: &[f64]| nodes.iter().map(|&node| at(x, node)).sum::<Vector3<f64>>() / nodes.len() as f64;
+        let [middle, end] = [mean(x), mean(target)];
+        let turn = nearest_turn(nodes.iter().map(|&node| [at(x, node) - middle, at(target, node) - end]));
+        let follower = |&node: &usize| {
+            let (arm, target) = (at(x, node) - middle, at(target, node));
+            Follower { node, arm, rest: target - end - Rotation3::new(turn) * arm, target }
+        };
+        let nodes = nodes.iter().map(follower).collect();
+        Self { middle, travel: end - middle, turn, nodes }
+    }
+
+    /// Puts the nodes where they are after a share of the way.
+    fn place(&self, share: f64, x: &mut [f64]) {
+        let rotation = Rotation3::new(self.turn * share);
+        for &Follower { node, arm, rest, target } in &self.nodes {
+            let place = self.middle + rotation * arm + (self.travel + rest) * share;
+            let place = if share < 1.0 { place } else { target };
+            x[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
+        }
+    }
+}
+
+/// The rotation, axis times angle, that takes the first of each pair nearest to the second; where several do, the one
+/// that turns least.
+///
+/// Source: Kabsch 1976, by the singular value decomposition.
+fn nearest_turn(pairs: impl Iterator<Item = [Vector3<f64>; 2]>) -> Vector3<f64> {
+    let (mut moment, mut size) = (Matrix3::zeros(), 0.0);
+    for [before, after] in pairs {
+        moment += after * before.transpose();
+        size += before.norm_squared() + after.norm_squared();
+    }
+    // One node does not turn. Written so that a NaN does not either.
+    if !(size > 0.0 && size.is_finite()) {
+        return Vector3::zeros();
+    }
+    // A row of nodes has no angle about itself: a trace of the identity decides.
+    let svd = (moment + Matrix3::identity() * (1e-6 * size)).svd(true, true);
+    let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Vector3::zeros() };
+    let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, (u * v).determinant().signum()));
+    let rotation = Rotation3::from_matrix_unchecked(u * mirror * v);
+    // A quaternion knows the axis of half a turn, too.
+    UnitQuaternion::from_rotation_matrix(&rotation).scaled_axis()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The distances between nodes at several shares of the way, against those at rest.
+    fn keeps_its_size(start: &[f64], turn: Vector3<f64>) {
+        let nodes: Vec<usize> = (0..start.len() / 3).collect();
+        let at = |x: &[f64], node: usize| Vector3::from_column_slice(&x[3 * node..3 * node + 3]);
+        let to = |&node: &usize| Rotation3::new(turn) * at(start, node) + Vector3::new(1.0, 2.0, 3.0);
+        let target: Vec<f64> = nodes.iter().flat_map(|node| <[f64; 3]>::from(to(node))).collect();
+        let motion = Motion::new(&nodes, start, &target);
+        for share in [0.25, 0.5, 0.75, 1.0] {
+            let mut x = start.to_vec();
+            motion.place(share, &mut x);
+            for node in &nodes {
+                let [length, rest] = [&x[..], start].map(|x| (at(x, *node) - at(x, 0)).norm());
+                assert!((length - rest).abs() < 1e-5, "{share}, {node}: {length} {rest}");
+            }
+            assert!(share < 1.0 || x == target);
+        }
+    }
+
+    #[test]
+    fn clips_turn_and_keep_their_size() {
+        let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0];
+        for angle in [0.0, 1.0, 2.5, std::f64::consts::PI] {
+            for axis in [Vector3::x(), Vector3::z(), Vector3::new(0.6, 0.0, 0.8)] {
+                // Four nodes, two, and one.
+                for count in [12, 6, 3] {
+                    keeps_its_size(&square[..count], axis * angle);
+                }
+            }
+        }
+    }
+}

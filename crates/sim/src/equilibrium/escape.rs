@@ -1,0 +1,72 @@
+//! Leaving a balanced state that is not stable.
+//!
+//! ```text
+//!       ╭─╮            from the hilltop a small way down on both sides along the direction of most negative
+//!   ╰──╯   ╰──╯        curvature, on to the valley's floor on each, and the lower valley is kept
+//! ```
+
+use super::{Equilibrium, Settings, Solver, Status};
+use crate::material::Curves;
+
+/// How far the node that moves most is moved, as a share of the mean edge: far beyond rounding, and too little for a
+/// triangle or hinge to turn over.
+const STEP: f64 = 1e-2;
+
+/// The second side is taken where its energy falls by this share more than that of the first: the two sides of a
+/// symmetric problem are equal but for rounding, which must not decide.
+const TIE: f64 = 1e-6;
+
+/// An energy lower by less than this share of it is lower by rounding.
+const ROUNDING: f64 = 1e-13;
+
+impl Solver<'_> {
+    /// Moves from an unstable balance to a balanced state of lower energy, if there is one; `found` then describes
+    /// that. The counters count on; the solver's state belongs to `x` again.
+    pub(super) fn leave(
+        &mut self,
+        curves: &Curves,
+        x: &mut [f64],
+        settings: &Settings,
+        found: &mut Equilibrium,
+    ) -> bool {
+        let Some(direction) = self.way_down() else { return false };
+        let origin = x.to_vec();
+        let mut limit = found.energy - ROUNDING * found.energy.abs();
+        let mut best = None;
+        let mut iterations = found.iterations;
+        for side in [1.0, -1.0] {
+            let mut moved: Vec<f64> = origin.iter().zip(&direction).map(|(x, d)| x + side * d).collect();
+            self.mixed.clear();
+            let state = self.minimise(curves, &mut moved, settings);
+            iterations += state.iterations;
+            if matches!(state.status, Status::Converged | Status::Unstable) && state.energy < limit {
+                limit = state.energy - TIE * (found.energy - state.energy);
+                x.copy_from_slice(&moved);
+                best = Some(state);
+            }
+        }
+        self.refresh(curves, x);
+        let left = best.is_some();
+        *found = Equilibrium { iterations, escaped: found.escaped || left, ..best.unwrap_or(*found) };
+        left
+    }
+
+    /// The direction of most negative curvature, as long as the step to take along it; `None` if no curvature is
+    /// negative beyond rounding. Needs the shifted factor of the true Hessian.
+    fn way_down(&mut self) -> Option<Vec<f64>> {
+        let curvature = self.factor.softest(self.cloth.pattern(), self.shift, &mut self.reduced);
+        // Written so that a NaN has no direction either.
+        if !(curvature < -super::SINGULAR * self.mean_diagonal()) {
+            return None;
+        }
+        let mut direction = vec![0.0; 3 * self.cloth.nodes()];
+        for (value, &coordinate) in self.reduced.iter().zip(self.cloth.unknown_coordinates()) {
+            direction[coordinate] = *value;
+        }
+        let length = |node: &[f64]| node.iter().map(|d| d * d).sum::<f64>().sqrt();
+        let largest = direction.chunks_exact(3).map(length).fold(0.0, f64::max);
+        let scale = STEP * self.cloth.mean_edge() / largest;
+        direction.iter_mut().for_each(|d| *d *= scale);
+        Some(direction)
+    }
+}
