@@ -4,6 +4,8 @@
 pub mod cantilever;
 #[path = "support/elastica.rs"]
 pub mod elastica;
+#[path = "support/picture_frame.rs"]
+pub mod picture_frame;
 
 use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_fit::report::Sample;

@@ -7,5 +7,6 @@ mod analytic;
 mod cantilever;
 mod knits;
 mod nist;
+mod picture_frame;
 mod strips;
 mod synthetic;
