@@ -1,5 +1,12 @@
 //! What several tests share.
 
+#[path = "support/cantilever.rs"]
+pub mod cantilever;
+#[path = "support/elastica.rs"]
+pub mod elastica;
+#[path = "support/picture_frame.rs"]
+pub mod picture_frame;
+
 use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_fit::report::Sample;
 use cloth_sim::material::Model;

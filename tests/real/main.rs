@@ -4,7 +4,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod analytic;
+mod bias;
+mod cantilever;
 mod knits;
 mod nist;
+mod picture_frame;
 mod strips;
 mod synthetic;

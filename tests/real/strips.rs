@@ -26,7 +26,7 @@ use std::fs::read_to_string;
 /// What the files are taken to be.
 const SHAPE: &str = "a strip test in the form that its README describes";
 
-const FABRICS: [&str; 2] = ["u3m_fab_cotton_knit", "u3m_fab_cupro_weave"];
+pub(crate) const FABRICS: [&str; 2] = ["u3m_fab_cotton_knit", "u3m_fab_cupro_weave"];
 
 const STRIPS: [(&str, Direction, Component); 2] =
     [("L_S2", Direction::Warp, Component::StretchWarp), ("W_S2", Direction::Weft, Component::StretchWeft)];
@@ -44,7 +44,7 @@ fn sample(fabric: &str) -> Sample {
     Sample { name: Some(fabric.into()), areal_density: density, thickness: None }
 }
 
-fn import(fabric: &str, strip: &str, direction: Direction) -> Sequence {
+pub(crate) fn import(fabric: &str, strip: &str, direction: Direction) -> Sequence {
     let gauge = &describe(fabric)["gauge"][strip];
     let metres = |key: &str| gauge[key].as_f64().expect(SHAPE);
     let extension = Extension::Separation("clamp_distance_m".into());

@@ -5,6 +5,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may stop where they cannot go on")]
 
+use cloth_fit::frame::Kind;
 use cloth_fit::io::read_set;
 use std::fs;
 use std::path::Path;
@@ -98,6 +99,25 @@ fn a_table_becomes_a_sequence_of_a_set() {
     let set = read_set(&folder.path().join("knit")).unwrap();
     assert_eq!((set.sequences.len(), set.sequences[0].frames.len()), (2, 7));
     assert_eq!(names(folder.path()), ["knit", "weft.csv"]);
+}
+
+#[test]
+fn a_bias_strip_has_its_yarns_at_45_degrees() {
+    let folder = folder();
+    let options =
+        OPTIONS.map(|option| if option == "--direction=weft" { "--direction=bias" } else { option });
+    let output =
+        command(folder.path(), &[&["import", "strip", "weft.csv"], &options[..]].concat()).output().unwrap();
+    assert!(told(&output).ends_with("first sequence of a new set: knit/stretch-bias\n"));
+    let set = read_set(&folder.path().join("knit")).unwrap();
+    let [sequence] = &set.sequences[..] else { panic!("one sequence") };
+    assert_eq!((sequence.name.as_str(), sequence.kind), ("stretch-bias", Kind::StretchBias));
+    // Vertex 0 is in the fixed clamp, vertex 2 in the moving one: along the pull, between weft and warp.
+    let along = sequence.mesh.material[2] - sequence.mesh.material[0];
+    let part = 0.08 * 0.5f64.sqrt();
+    assert!((along.x - part).abs() < 1e-12 && (along.y - part).abs() < 1e-12, "{along}");
+    let pull = sequence.mesh.positions[2] - sequence.mesh.positions[0];
+    assert!((pull.normalize() - sequence.force_direction.unwrap()).norm() < 1e-12);
 }
 
 #[test]

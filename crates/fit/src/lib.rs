@@ -26,6 +26,7 @@
 //! | [`refine`] | a curve grows control points |
 //! | [`uncertainty`] | noise, misfit, bands |
 //! | [`stage`] | stretch, from set to report |
+//! | [`measure`] | a frame summed up: shear angle, torque, force difference, profile |
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //!
 //! # Example

@@ -126,7 +126,12 @@ impl Replica {
     /// A rest mesh that is no rectangle; neither clips nor a table; clips that claim the same node and disagree; no frame in
     /// which anything happens or is measured; springs in long cells; what the mechanics refuse.
     pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
-        let specimen = Specimen::new(sequence, parts.nodes, parts.diagonals)?;
+        // On the bias the yarns run along the cells' diagonals: triangles without an edge along each would lock.
+        let diagonals = match (sequence.kind, parts.model) {
+            (Kind::StretchBias, Model::Stvk | Model::SoftConstraint) => Diagonals::Crossed,
+            _ => parts.diagonals,
+        };
+        let specimen = Specimen::new(sequence, parts.nodes, diagonals)?;
         check_cells(sequence, &specimen, parts.model)?;
         let gravity = specimen.turn(&sequence.gravity);
         // A component of gravity that rounding left after turning is none.
@@ -196,6 +201,16 @@ impl Replica {
         let length = frame.extension;
         let rigidity = weight * length.powi(3) * (0.5 * angle).cos() / (8.0 * angle.tan());
         Some([rigidity, (2.0 * angle / length).max(f64::MIN_POSITIVE)])
+    }
+
+    /// True if the sheet lies on a table.
+    pub fn is_on_table(&self) -> bool {
+        self.lines.is_some()
+    }
+
+    /// The sheet at rest, 3 stacked coordinates a node, m.
+    pub fn rest(&self) -> Vec<f64> {
+        self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
     }
 
     /// True if a sheet between clips was seen to leave its plane, and may do so.

@@ -419,20 +419,26 @@ impl<'a> Simulation<'a> {
         let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
         let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
         let mut x = predicted(state, cloth.unknown_coordinates(), change);
-        let mut solve = |x: &mut Vec<f64>| {
-            let equilibrium = solver.solve(curves, x, &self.task.settings);
-            self.meter.add(&equilibrium);
-            equilibrium
-        };
-        let first = x.clone();
-        let mut found = solve(&mut x);
-        if !found.converged() && first != frame.start {
-            // A measured shape or a prediction that was too far off: from the blended shape instead.
+        let settings = &self.task.settings;
+        let mut found = solver.solve(curves, &mut x, settings);
+        self.meter.add(&found);
+        let mut escaped = found.escaped;
+        if !found.converged() {
+            // A measured shape or a prediction that was too far off: from the replica's own start instead.
             x.copy_from_slice(&frame.start);
-            found = solve(&mut x);
+            found = solver.solve(curves, &mut x, settings);
+            self.meter.add(&found);
+            escaped = found.escaped;
+        }
+        if !found.converged() && !replica.is_on_table() {
+            // In load steps, from the flat sheet.
+            x = replica.rest();
+            found = solver.drive(curves, &mut x, &frame.start, settings);
+            self.meter.add(&found);
+            escaped = found.escaped;
         }
         let mut result = FrameResult {
-            state: State { x, sensitivity: Vec::new(), escaped: state.escaped },
+            state: State { x, sensitivity: Vec::new(), escaped: state.escaped || escaped },
             status: found.status,
             forces: Vec::new(),
             simulated: Vec::new(),

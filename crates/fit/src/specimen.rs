@@ -45,7 +45,7 @@ impl Specimen {
         let (free, gripped) = free_region(sequence, &rectangle);
         let [corner, opposite] = free;
         let [width, height] = [opposite.x - corner.x, opposite.y - corner.y];
-        let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height));
+        let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height, diagonals));
         let grid = Grid { columns, rows, width, height, diagonals };
         let mut mesh = grid.mesh().map_err(mechanics)?;
         let locator = Locator::new(&sequence.mesh, &rectangle);
@@ -107,9 +107,10 @@ fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2]
     ([low, high], gripped)
 }
 
-/// Columns and rows that make cells near square, as many as 24×24.
-fn near_square(width: f64, height: f64) -> [usize; 2] {
-    let cells = (DEFAULT_CELLS * DEFAULT_CELLS) as f64;
+/// Columns and rows that make cells near square, with about as many nodes as 25×25: crossed cells have one more each.
+fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
+    let cells =
+        (DEFAULT_CELLS * DEFAULT_CELLS) as f64 / if diagonals == Diagonals::Crossed { 2.0 } else { 1.0 };
     let side = (width * height / cells).sqrt();
     [width, height].map(|length| ((length / side).round() as usize).max(2) + 1)
 }

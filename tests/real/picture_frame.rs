@@ -1,0 +1,98 @@
+//! Source: exact homogeneous shear of a 100 mm square in a picture frame: under the shear curve of a wool fabric
+//! (synthetic_frames/), and under a constant stiffness (analytic/).
+//!
+//! Goal: from shear angle and diagonal pull alone, the sets of the shear stage.
+//!
+//! ```text
+//!      ╱────────╱ ↗ F      four bars of 100 mm, hinged at the corners; wool 0.5–7.5° in eight frames,
+//!    ╱        ╱            50 N/m at 2–30° in five
+//! F ╱────────╱
+//! ```
+//!
+//! Parameters: the force along each bar F / (2 cos(π/4 − γ/2)) is the files' stress times the side within 1e-6, the
+//! diagonals within 1e-8.
+
+use cloth_fit::frame::MeasurementSet;
+use cloth_fit::measure::{clamped, effective_shear};
+use fit_cloth_tests::picture_frame::{PictureFrame, SIDE, diagonal, force_along_bars};
+use fit_cloth_tests::rows;
+
+/// A set and the law behind it: shear strain and stress, N/m, of the frames after the first.
+pub(crate) struct Known {
+    pub(crate) set: MeasurementSet,
+    pub(crate) law: Vec<[f64; 2]>,
+}
+
+/// What is read of a frame.
+struct Row {
+    angle: f64,
+    diagonal: f64,
+    force: f64,
+    strain: f64,
+    stress: f64,
+}
+
+fn known(rows: &[Row]) -> Known {
+    let pulls = rows.iter().map(|row| [row.angle, force_along_bars(row.force, row.angle)]);
+    Known {
+        set: PictureFrame::of_pulls(pulls.collect()).measure(),
+        law: rows.iter().map(|row| [row.strain, row.stress]).collect(),
+    }
+}
+
+fn read(name: &str, row: fn(&[f64]) -> Row) -> Vec<Row> {
+    let numbers = |fields: &Vec<String>| -> Vec<f64> {
+        fields.iter().map(|field| field.parse().expect("numbers, as its README describes")).collect()
+    };
+    rows(name).iter().map(|fields| row(&numbers(fields))).collect()
+}
+
+fn wool_rows() -> Vec<Row> {
+    read("synthetic_frames/picture_frame_100mm.csv", |r| Row {
+        angle: r[1].to_radians(),
+        diagonal: r[2],
+        force: r[3],
+        strain: r[4],
+        stress: r[5],
+    })
+}
+
+fn linear_rows() -> Vec<Row> {
+    read("analytic/picture_frame_linear.csv", |r| Row {
+        angle: r[2].to_radians(),
+        diagonal: r[5],
+        force: r[4],
+        strain: r[3],
+        stress: r[1] * r[3],
+    })
+}
+
+/// Wool.
+pub(crate) fn wool() -> Known {
+    known(&wool_rows())
+}
+
+/// A constant 50 N/m.
+pub(crate) fn linear() -> Known {
+    known(&linear_rows())
+}
+
+#[test]
+fn diagonal_pulls_become_forces_along_the_bars() {
+    for (rows, Known { set, law }, count) in [(wool_rows(), wool(), 8), (linear_rows(), linear(), 5)] {
+        let [sequence] = &set.sequences[..] else { panic!("one sequence") };
+        assert_eq!((rows.len(), law.len(), sequence.frames.len()), (count, count, count + 1));
+        let mut worst = 0.0f64;
+        for (row, frame) in rows.iter().zip(&sequence.frames[1..]) {
+            assert!((diagonal(row.angle) - row.diagonal).abs() <= 1e-8 * row.diagonal);
+            assert!((row.angle.sin() - row.strain).abs() <= 1e-8 * row.strain);
+            let (material, now) = clamped(sequence, frame);
+            assert!((effective_shear(&material, &now).unwrap() - row.angle).abs() < 1e-12);
+            for cord in &frame.cords {
+                worst = worst.max((cord.force.norm() / SIDE / row.stress - 1.0).abs());
+            }
+        }
+        println!("{count} frames: stress within {worst:.1e}");
+        assert!(worst <= 1e-6);
+    }
+}
