@@ -14,7 +14,8 @@ use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Model};
-use fit_cloth_tests::{Cantilever, GRAVITY, between_rows, stress_error};
+use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, between_rows};
+use fit_cloth_tests::stress_error;
 
 const DENSITY: f64 = 0.2;
 
