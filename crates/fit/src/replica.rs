@@ -247,7 +247,15 @@ impl Replica {
             .iter()
             .enumerate()
             .filter_map(|(node, group)| Some(Held { node, clip: Some((*group)?) }));
-        self.cloths.push(cloth(sequence, parts, specimen, gravity, &held.collect::<Vec<_>>(), self.planar)?);
+        self.cloths.push(cloth(
+            sequence,
+            parts,
+            specimen,
+            gravity,
+            &held.collect::<Vec<_>>(),
+            &[],
+            self.planar,
+        )?);
         self.fields = (0..grip.groups.len())
             .map(|group| {
                 let own = |holder: &Option<usize>| if *holder == Some(group) { 1.0 } else { 0.0 };
@@ -306,7 +314,8 @@ impl Replica {
                 Some(&known) => known,
                 None => {
                     let nodes: Vec<Held> = lines.first(held).map(|node| Held { node, clip: None }).collect();
-                    self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, false)?);
+                    let tied = lines.beyond(held);
+                    self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, tied, false)?);
                     cloth_of.insert(held, self.cloths.len() - 1);
                     self.cloths.len() - 1
                 }
@@ -326,6 +335,7 @@ fn cloth(
     specimen: &Specimen,
     gravity: Vector3<f64>,
     held: &[Held],
+    tied: &[Vec<usize>],
     planar: bool,
 ) -> Result<Cloth> {
     // What stays in its plane does not bend.
@@ -338,6 +348,7 @@ fn cloth(
         areal_density: parts.areal_density,
         gravity,
         held,
+        tied,
         planar,
     })
     .map_err(|source| Error::Mechanics { context: sequence.name.clone(), source })

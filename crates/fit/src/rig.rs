@@ -192,6 +192,7 @@ impl Rig {
             areal_density: fabric.areal_density_kg_m2,
             gravity: Vector3::zeros(),
             held: &held,
+            tied: &[],
             planar: true,
         })
         .map_err(mechanics)?;

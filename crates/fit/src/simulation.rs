@@ -418,7 +418,7 @@ impl<'a> Simulation<'a> {
         // A poisoned pool only means that another frame panicked; its solvers hold no state that matters.
         let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
         let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
-        let mut x = predicted(state, cloth.unknown_coordinates(), change);
+        let mut x = predicted(state, cloth, change);
         let settings = &self.task.settings;
         let mut found = solver.solve(curves, &mut x, settings);
         self.meter.add(&found);
@@ -467,11 +467,12 @@ impl<'a> Simulation<'a> {
         let clip_forces = solver.clip_forces();
         result.forces = frame.forces.iter().map(|component| component.of(&clip_forces)).collect();
         let columns = parameter_columns(cloth, curves, groups, x);
-        let unknowns = cloth.unknown_coordinates();
-        let mut sensitivity: Vec<f64> = columns
-            .iter()
-            .flat_map(|column| unknowns.iter().map(|&coordinate| -column[coordinate]))
-            .collect();
+        let unknowns = cloth.unknowns();
+        let mut sensitivity = vec![0.0; columns.len() * unknowns];
+        for (column, slopes) in columns.iter().zip(sensitivity.chunks_exact_mut(unknowns.max(1))) {
+            cloth.collect(column, slopes);
+            slopes.iter_mut().for_each(|force| *force = -*force);
+        }
         solver.solve_linear(&mut sensitivity);
         match self.task.objective {
             Objective::Forces => {
@@ -481,7 +482,7 @@ impl<'a> Simulation<'a> {
             Objective::Positions => {
                 result.simulated = seen_unknowns(replica, frame).map(|(_, c)| x[c]).collect();
                 let seen = seen_unknowns(replica, frame).map(|(unknown, _)| unknown);
-                let row = |unknown| (0..columns.len()).map(move |k| k * unknowns.len() + unknown);
+                let row = |unknown| (0..columns.len()).map(move |k| k * unknowns + unknown);
                 result.derivatives = seen.flat_map(row).map(|place| sensitivity[place]).collect();
             }
         }
@@ -535,15 +536,15 @@ impl Residuals for Simulation<'_> {
     }
 }
 
-/// The unknowns of a frame's cloth whose coordinate was seen: their index, and the coordinate's.
+/// The free coordinates of a frame that were seen: their unknown, and their index.
 fn seen_unknowns<'r>(
     replica: &'r Replica,
     frame: &'r ReplicaFrame,
 ) -> impl Iterator<Item = (usize, usize)> + 'r {
-    let observed = frame.observed.iter();
-    let unknowns = replica.cloth(frame).unknown_coordinates();
-    observed.flat_map(move |observed| {
-        unknowns.iter().copied().enumerate().filter(|&(_, coordinate)| observed[coordinate].is_finite())
+    let free = replica.cloth(frame).free_coordinates();
+    frame.observed.iter().flat_map(move |observed| {
+        let seen = free.iter().filter(|(coordinate, _)| observed[*coordinate].is_finite());
+        seen.map(|&(coordinate, unknown)| (unknown, coordinate))
     })
 }
 
@@ -563,12 +564,13 @@ fn measured<'r>(
 }
 
 /// A state, moved ahead by a change of the control values.
-fn predicted(state: &State, unknowns: &[usize], change: Option<&DVector<f64>>) -> Vec<f64> {
+fn predicted(state: &State, cloth: &Cloth, change: Option<&DVector<f64>>) -> Vec<f64> {
     let mut x = state.x.clone();
-    if let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * unknowns.len()) {
-        for (column, step) in state.sensitivity.chunks_exact(unknowns.len().max(1)).zip(change.iter()) {
-            for (&coordinate, slope) in unknowns.iter().zip(column) {
-                x[coordinate] += slope * step;
+    let unknowns = cloth.unknowns();
+    if let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * unknowns) {
+        for (column, step) in state.sensitivity.chunks_exact(unknowns.max(1)).zip(change.iter()) {
+            for &(coordinate, unknown) in cloth.free_coordinates() {
+                x[coordinate] += column[unknown] * step;
             }
         }
     }
@@ -634,12 +636,18 @@ fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> Stat
         return State { x: own, ..State::default() };
     };
     let mut measured = own.clone();
-    cloth.unknown_coordinates().iter().for_each(|&c| measured[c] = observed[c]);
+    cloth.free_coordinates().iter().for_each(|&(c, _)| measured[c] = observed[c]);
     let imbalance = |x: &[f64]| {
         let mut gradient = vec![0.0; x.len()];
         cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));
-        cloth.unknown_coordinates().iter().map(|&c| gradient[c] * gradient[c]).sum::<f64>()
+        cloth.free_coordinates().iter().map(|&(c, _)| gradient[c] * gradient[c]).sum::<f64>()
     };
-    let x = if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) { measured } else { own };
+    let x = if replica.is_on_table() {
+        own
+    } else if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) {
+        measured
+    } else {
+        own
+    };
     State { x, ..State::default() }
 }

@@ -86,7 +86,7 @@ pub struct Settings {
     pub variant: Variant,
     /// Columns and rows of the simulation's grid; default as many cells as 25×25 nodes have, near square.
     pub nodes: Option<[usize; 2]>,
-    /// How its cells are split; default '/'.
+    /// How its cells are split; default alternating: cells all split one way twist a sheet that is bent.
     pub diagonals: Diagonals,
     /// Most control points; default 5.
     pub points: usize,
@@ -115,7 +115,7 @@ impl Default for Settings {
             model: Model::Stvk,
             variant: Variant::Orthotropic,
             nodes: None,
-            diagonals: Diagonals::Forward,
+            diagonals: Diagonals::Alternating,
             points: 5,
             constraints: Constraints::Stable,
             compression: Compression::ZeroStrain,

@@ -141,7 +141,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
         // Where a shape is one of several, its distance from another is no measure (Miguel et al. 2012, §6).
         let compared = frame.observed.iter().filter(|_| !multi_stable);
         let free: BTreeSet<usize> =
-            replica.cloth(frame).unknown_coordinates().iter().map(|c| c / 3).collect();
+            replica.cloth(frame).free_coordinates().iter().map(|(c, _)| c / 3).collect();
         for observed in compared {
             for &node in &free {
                 let place = 3 * node..3 * node + 3;

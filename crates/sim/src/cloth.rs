@@ -32,6 +32,8 @@ pub struct Problem<'a> {
     pub gravity: Vector3<f64>,
     /// Nodes at prescribed places.
     pub held: &'a [Held],
+    /// Groups of free nodes that move alike, all by the same displacement: the lines of a sheet that bends as a cylinder.
+    pub tied: &'a [Vec<usize>],
     /// All motion is in planes z = const: two unknowns a node.
     pub planar: bool,
 }
@@ -52,8 +54,10 @@ pub struct Cloth {
     triangles: Vec<[usize; 3]>,
     /// Mean length of the rest mesh's edges, m.
     mean_edge: f64,
-    /// Index into stacked coordinates of every unknown.
+    /// Index into stacked coordinates of every unknown; of a group that moves alike, its first node's.
     unknowns: Vec<usize>,
+    /// Every coordinate that is not held, and its unknown.
+    free: Vec<(usize, usize)>,
     pattern: Pattern,
     /// Per part: where each lower entry of each element goes. See [`Cloth::hessian`].
     targets: [Vec<u32>; 2],
@@ -91,10 +95,19 @@ impl Cloth {
         }
         let mut graph = GraphPass { neighbours: vec![BTreeSet::new(); mesh.len()] };
         visit(&membrane, bending.as_ref(), planar, &mut graph);
-        let unknowns = number(&held, &graph.neighbours, if planar { 2 } else { 3 });
+        let leader = leaders(mesh.len(), problem.tied);
+        let neighbours = graph.led(&leader);
+        let moves: Vec<bool> = (0..mesh.len()).map(|node| !held[node] && leader[node] == node).collect();
+        let dimensions = if planar { 2 } else { 3 };
+        let unknowns = number(&moves, &neighbours, dimensions);
         let mut unknown_of = vec![HELD; 3 * mesh.len()];
         unknowns.iter().enumerate().for_each(|(unknown, &coordinate)| unknown_of[coordinate] = unknown);
-        let columns = columns(&unknowns, &unknown_of, &graph.neighbours);
+        let columns = columns(&unknowns, &unknown_of, &neighbours);
+        for node in (0..mesh.len()).filter(|&node| leader[node] != node) {
+            (0..3).for_each(|i| unknown_of[3 * node + i] = unknown_of[3 * leader[node] + i]);
+        }
+        let coordinates = unknown_of.iter().copied().enumerate();
+        let free = coordinates.filter(|&(_, unknown)| unknown != HELD).collect();
         let too_large = Error::InvalidValue {
             field: "nodes",
             value: mesh.len() as f64,
@@ -123,6 +136,7 @@ impl Cloth {
             triangles: mesh.triangles.clone(),
             mean_edge: mean_edge(mesh)?,
             unknowns,
+            free,
             pattern,
             targets,
             diagonal,
@@ -164,6 +178,22 @@ impl Cloth {
         &self.unknowns
     }
 
+    /// Every coordinate that is not held, and the index of its unknown; several of one unknown where nodes move alike.
+    pub fn free_coordinates(&self) -> &[(usize, usize)] {
+        &self.free
+    }
+
+    /// Sums a quantity of all coordinates, as a gradient, over each unknown.
+    pub fn collect(&self, coordinates: &[f64], unknowns: &mut [f64]) {
+        unknowns.fill(0.0);
+        self.free.iter().for_each(|&(coordinate, unknown)| unknowns[unknown] += coordinates[coordinate]);
+    }
+
+    /// Sets the coordinates that are not held to their unknown's value, as of a step.
+    pub fn spread(&self, unknowns: &[f64], coordinates: &mut [f64]) {
+        self.free.iter().for_each(|&(coordinate, unknown)| coordinates[coordinate] = unknowns[unknown]);
+    }
+
     /// Total energy, J: elastic, less the work of the weight.
     ///
     /// * `x` — 3 stacked coordinates a node, m
@@ -201,10 +231,15 @@ impl Cloth {
     /// `values` holds, in this order: the lower triangle by columns ([`Cloth::entries`]); the derivative of each clip's
     /// summed gradient with respect to the unknowns, 3 × clips rows of [`Cloth::unknowns`] each; one number to ignore.
     pub fn hessian(&self, curves: &Curves, x: &[f64], curvature: Curvature<'_>, values: &mut Vec<f64>) {
+        let len = self.entries() + self.border_len() + 1;
+        let twice = if self.is_tied() { self.entries() } else { 0 };
         values.clear();
-        values.resize(self.entries() + self.border_len() + 1, 0.0);
+        values.resize(len + twice, 0.0);
         let targets = [&self.targets[0][..], &self.targets[1][..]];
         self.visit(&mut HessianPass { curves, x, curvature, targets, values });
+        // Elements list an entry and its mirror once; where both fall on one diagonal entry, it counts twice.
+        (0..twice).for_each(|place| values[place] += 2.0 * values[len + place]);
+        values.truncate(len);
     }
 
     /// Where the entry of two unknowns stands among the Hessian's values; `None` where it is zero in every state.
@@ -297,6 +332,21 @@ impl Cloth {
         self.weights.get(node).map_or(0.0, Vector3::norm)
     }
 
+    fn is_tied(&self) -> bool {
+        self.free.len() > self.unknowns.len()
+    }
+
+    /// Norm of a gradient over the unknowns, N.
+    pub(crate) fn norm(&self, gradient: &[f64]) -> f64 {
+        let square = |forces: &mut dyn Iterator<Item = f64>| forces.map(|f| f * f).sum::<f64>().sqrt();
+        if !self.is_tied() {
+            return square(&mut self.unknowns.iter().map(|&coordinate| gradient[coordinate]));
+        }
+        let mut forces = vec![0.0; self.unknowns.len()];
+        self.collect(gradient, &mut forces);
+        square(&mut forces.into_iter())
+    }
+
     fn border_len(&self) -> usize {
         3 * self.clips * self.unknowns.len()
     }
@@ -371,6 +421,17 @@ fn check(problem: &Problem<'_>) -> Result<()> {
     if let Some(held) = problem.held.iter().find(|held| held.node >= mesh.len()) {
         return Err(Error::ShapeMismatch { what: "held node", expected: mesh.len(), found: held.node });
     }
+    let mut seen = BTreeSet::new();
+    let mut unfit = |node: usize| {
+        node >= mesh.len() || problem.held.iter().any(|held| held.node == node) || !seen.insert(node)
+    };
+    if let Some(&node) = problem.tied.iter().flatten().find(|node| unfit(**node)) {
+        return Err(Error::InvalidValue {
+            field: "tied",
+            value: node as f64,
+            expected: "free nodes of the mesh, each in one group",
+        });
+    }
     let parts = mesh.parts();
     let held: BTreeSet<usize> = problem.held.iter().map(|held| parts[held.node]).collect();
     match parts.iter().find(|part| !held.contains(part)) {
@@ -384,9 +445,9 @@ fn check(problem: &Problem<'_>) -> Result<()> {
 }
 
 /// Unknowns in an order of the nodes that keeps the factor sparse, the coordinates of a node together.
-fn number(held: &[bool], neighbours: &[BTreeSet<usize>], coordinates: usize) -> Vec<usize> {
-    let free: Vec<usize> = (0..held.len()).filter(|&node| !held[node]).collect();
-    let mut place = vec![HELD; held.len()];
+fn number(moves: &[bool], neighbours: &[BTreeSet<usize>], coordinates: usize) -> Vec<usize> {
+    let free: Vec<usize> = (0..moves.len()).filter(|&node| moves[node]).collect();
+    let mut place = vec![HELD; moves.len()];
     free.iter().enumerate().for_each(|(index, &node)| place[node] = index);
     let graph: Vec<Vec<usize>> = free
         .iter()
@@ -420,9 +481,30 @@ fn columns(unknowns: &[usize], unknown_of: &[usize], neighbours: &[BTreeSet<usiz
         .collect()
 }
 
+/// The node whose motion each node shares: itself, or the first of its group.
+fn leaders(nodes: usize, tied: &[Vec<usize>]) -> Vec<usize> {
+    let mut leader: Vec<usize> = (0..nodes).collect();
+    for group in tied {
+        group.iter().for_each(|&node| leader[node] = group[0]);
+    }
+    leader
+}
+
 /// Which nodes share an element.
 struct GraphPass {
     neighbours: Vec<BTreeSet<usize>>,
+}
+
+impl GraphPass {
+    /// The same between groups that move alike.
+    fn led(self, leader: &[usize]) -> Vec<BTreeSet<usize>> {
+        let mut led = vec![BTreeSet::new(); leader.len()];
+        for (node, neighbours) in self.neighbours.into_iter().enumerate() {
+            let own = leader[node];
+            led[own].extend(neighbours.into_iter().map(|other| leader[other]).filter(|&other| other != own));
+        }
+        led
+    }
 }
 
 impl Pass for GraphPass {
@@ -456,14 +538,18 @@ impl ScatterPass<'_> {
             self.clip_of[node]
                 .map(|clip| self.pattern.entries() + (3 * clip + i) * self.pattern.size() + column)
         };
+        let nowhere = self.pattern.entries() + 3 * self.clips * self.pattern.size();
         let place = match (unknown(first), unknown(second)) {
             (HELD, HELD) => None,
             (HELD, column) => border(first, column),
             (column, HELD) => border(second, column),
+            (a, b) if a == b && first != second => {
+                self.pattern.position(a, a).map(|diagonal| nowhere + 1 + diagonal)
+            }
             (a, b) => self.pattern.position(a.max(b), a.min(b)),
         };
         // What nobody reads goes to the last place.
-        place.unwrap_or(self.pattern.entries() + 3 * self.clips * self.pattern.size())
+        place.unwrap_or(nowhere)
     }
 }
 

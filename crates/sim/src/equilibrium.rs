@@ -154,6 +154,8 @@ pub struct Solver<'a> {
     trial_gradient: Vec<f64>,
     trial_scale: ForceScale,
     reduced: Vec<f64>,
+    /// The gradient, summed over each unknown.
+    forces: Vec<f64>,
     mixed: Vec<f64>,
     /// Imbalance after the last accepted step over that before.
     contraction: f64,
@@ -176,6 +178,7 @@ impl<'a> Solver<'a> {
             trial_gradient: vec![0.0; coordinates],
             trial_scale: ForceScale::new(cloth.nodes()),
             reduced: vec![0.0; cloth.unknowns()],
+            forces: vec![0.0; cloth.unknowns()],
             mixed: Vec::new(),
             contraction: 1.0,
             shift: 0.0,
@@ -239,7 +242,7 @@ impl<'a> Solver<'a> {
         let mut iterations = 0;
         let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
         // An angle at a collapsed wing has a finite energy and forces that are not.
-        let finite = energy.is_finite() && norm_of(&self.gradient, self.cloth).is_finite();
+        let finite = energy.is_finite() && self.cloth.norm(&self.gradient).is_finite();
         let mut status = if finite { Status::Stalled } else { Status::NotFinite };
         if status == Status::Stalled && settings.method == Method::MixedNewton {
             status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
@@ -269,32 +272,32 @@ impl<'a> Solver<'a> {
     ///
     /// Rounding: coordinates are known to an ulp, and an error δ of position is an error K δ of force; forces sum with
     /// errors of an ulp of their own. A hundred of both are allowed for.
-    fn balance(&self, x: &[f64], settings: &Settings) -> (f64, f64, Limit) {
+    fn balance(&mut self, x: &[f64], settings: &Settings) -> (f64, f64, Limit) {
         let cloth = self.cloth;
         let size = x.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-        let mut rounding: f64 = 0.0;
-        let (mut largest, mut total, mut typical) = (0.0f64, 0.0, 0.0);
-        let mut nodes = 0;
+        let (mut rounding, mut typical): (f64, f64) = (0.0, 0.0);
         let mut last = usize::MAX;
-        for &coordinate in cloth.unknown_coordinates() {
+        for &(coordinate, _) in cloth.free_coordinates() {
             let node = coordinate / 3;
             if node == last {
                 continue;
             }
             last = node;
-            let force = Vector3::from_column_slice(&self.gradient[3 * node..3 * node + 3]);
-            let force = if cloth.is_planar() { Vector3::new(force.x, force.y, 0.0) } else { force };
-            largest = largest.max(force.norm());
-            total += force.norm_squared();
             typical += self.scale.magnitude[node].max(cloth.weight(node));
-            nodes += 1;
             let error = self.scale.stiffness[node] * size + self.scale.magnitude[node];
             rounding = rounding.max(100.0 * f64::EPSILON * error);
         }
+        cloth.collect(&self.gradient, &mut self.forces);
+        let moving = self.forces.chunks_exact(if cloth.is_planar() { 2 } else { 3 });
+        let nodes = moving.len() as f64;
+        // Nodes that move alike balance as one, whose forces are those of all.
+        rounding *= cloth.free_coordinates().len() as f64 / self.forces.len().max(1) as f64;
+        let squares = moving.map(|force| force.iter().map(|f| f * f).sum::<f64>());
+        let (largest, total) = squares.fold((0.0f64, 0.0), |(largest, total), s| (largest.max(s), total + s));
         let (imbalance, asked) = match settings.tolerance {
-            Tolerance::Relative(share) => (largest, share * typical / f64::from(nodes.max(1))),
+            Tolerance::Relative(share) => (largest.sqrt(), share * typical / nodes.max(1.0)),
             Tolerance::Absolute(limit) => {
-                rounding *= f64::from(nodes).sqrt();
+                rounding *= nodes.sqrt();
                 (total.sqrt(), limit)
             }
         };
@@ -305,7 +308,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn is_balanced(&self, x: &[f64], settings: &Settings) -> bool {
+    fn is_balanced(&mut self, x: &[f64], settings: &Settings) -> bool {
         let (imbalance, tolerance, _) = self.balance(x, settings);
         imbalance <= tolerance
     }
@@ -340,10 +343,10 @@ impl<'a> Solver<'a> {
     /// factor.
     fn chord_steps(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings, energy: &mut f64) {
         while self.contraction < CHORD_CONTRACTION && !self.is_balanced(x, settings) {
-            let norm = norm_of(&self.gradient, self.cloth);
+            let norm = self.cloth.norm(&self.gradient);
             self.direction();
             let trial_energy = self.try_step(curves, x, 1.0);
-            let contraction = norm_of(&self.trial_gradient, self.cloth) / norm;
+            let contraction = self.cloth.norm(&self.trial_gradient) / norm;
             if !(contraction < CHORD_CONTRACTION) || self.cloth.hinge_jumps(x, &self.trial) {
                 return;
             }
@@ -398,18 +401,12 @@ impl<'a> Solver<'a> {
 
     /// d = −K⁻¹ g into `step`; returns g·d.
     fn direction(&mut self) -> f64 {
-        let unknowns = self.cloth.unknown_coordinates();
-        for (value, &coordinate) in self.reduced.iter_mut().zip(unknowns) {
-            *value = -self.gradient[coordinate];
-        }
+        self.cloth.collect(&self.gradient, &mut self.reduced);
+        self.reduced.iter_mut().for_each(|force| *force = -*force);
         self.factor.solve(self.cloth.pattern(), &mut self.reduced);
         self.step.fill(0.0);
-        let mut slope = 0.0;
-        for (value, &coordinate) in self.reduced.iter().zip(unknowns) {
-            self.step[coordinate] = *value;
-            slope += value * self.gradient[coordinate];
-        }
-        slope
+        self.cloth.spread(&self.reduced, &mut self.step);
+        self.gradient.iter().zip(&self.step).map(|(g, d)| g * d).sum()
     }
 
     /// Moves along the step, halved until it is acceptable.
@@ -424,7 +421,7 @@ impl<'a> Solver<'a> {
         if !(slope < 0.0) {
             return false;
         }
-        let norm = norm_of(&self.gradient, self.cloth);
+        let norm = self.cloth.norm(&self.gradient);
         let mut length = 1.0;
         for halving in 0..30 {
             let trial_energy = self.try_step(curves, x, length);
@@ -434,7 +431,7 @@ impl<'a> Solver<'a> {
                 trial_energy <= *energy + 1e-4 * length * slope
             };
             // Near the end energy differences drown in rounding: the imbalance decides.
-            let contraction = norm_of(&self.trial_gradient, self.cloth) / norm;
+            let contraction = self.cloth.norm(&self.trial_gradient) / norm;
             if contraction.is_finite()
                 && (acceptable || contraction < 0.5)
                 && !self.cloth.hinge_jumps(x, &self.trial)
@@ -483,7 +480,7 @@ impl<'a> Solver<'a> {
             self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
             let mean = self.mean_diagonal();
             let mut damping = shift.unwrap_or(1e-3 * mean);
-            let norm = norm_of(&self.gradient, self.cloth);
+            let norm = self.cloth.norm(&self.gradient);
             *iterations += 1;
             loop {
                 // Written so that a NaN stops it too.
@@ -493,7 +490,7 @@ impl<'a> Solver<'a> {
                 if self.factorise(damping) {
                     self.direction();
                     let trial_energy = self.try_step(curves, x, 1.0);
-                    let smaller = norm_of(&self.trial_gradient, self.cloth) < 0.5 * norm;
+                    let smaller = self.cloth.norm(&self.trial_gradient) < 0.5 * norm;
                     if trial_energy.is_finite()
                         && (trial_energy < *energy || smaller)
                         && !self.cloth.hinge_jumps(x, &self.trial)
@@ -508,9 +505,4 @@ impl<'a> Solver<'a> {
         }
         if self.is_balanced(x, settings) { Status::Converged } else { Status::IterationLimit }
     }
-}
-
-/// Norm of the gradient over the unknowns.
-fn norm_of(gradient: &[f64], cloth: &Cloth) -> f64 {
-    cloth.unknown_coordinates().iter().map(|&c| gradient[c] * gradient[c]).sum::<f64>().sqrt()
 }

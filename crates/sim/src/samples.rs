@@ -76,6 +76,7 @@ impl Sample {
             areal_density: self.areal_density,
             gravity: self.gravity,
             held: &self.held,
+            tied: &[],
             planar: self.planar,
         })
     }

@@ -117,6 +117,15 @@ impl Lines {
         self.nodes[..lines].iter().flatten().copied()
     }
 
+    /// All lines but the first. Each moves as a whole, so that the sheet bends as a cylinder.
+    ///
+    /// Hinges of a triangulated sheet tie bending to twist: split all one way, a sheet hung off a table twists (by 5 mm at
+    /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it 20 % softer. A cylinder knows
+    /// neither: its flexural rigidity is 3 × the hinges' stiffness, as the curve files say.
+    pub(super) fn beyond(&self, lines: usize) -> &[Vec<usize>] {
+        &self.nodes[lines..]
+    }
+
     /// From the edge to the tip, m; `None` if the sheet does not reach the edge.
     pub(super) fn chord(&self, x: &[f64]) -> Option<Vector3<f64>> {
         let centre = |line: &Vec<usize>| {

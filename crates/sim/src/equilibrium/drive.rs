@@ -74,19 +74,18 @@ impl Solver<'_> {
     /// Moves the free nodes of a state whose held nodes have moved away from `x`, to first order. The gradient and the
     /// factor are those of `x`. The strains that this step predicts are kept for the first matrix.
     fn predict(&mut self, curves: &Curves, x: &[f64], state: &mut [f64]) {
-        let unknowns = self.cloth.unknown_coordinates();
         self.step.iter_mut().zip(state.iter().zip(x)).for_each(|(d, (to, from))| *d = to - from);
         let farthest = self.step.iter().fold(0.0, |largest: f64, d| largest.max(d.abs()));
         let probe = PROBE * self.cloth.mean_edge() / farthest.max(f64::MIN_POSITIVE);
         self.try_step(curves, x, probe);
-        for (value, &coordinate) in self.reduced.iter_mut().zip(unknowns) {
-            *value = (self.gradient[coordinate] - self.trial_gradient[coordinate]) / probe;
-        }
+        let change =
+            self.gradient.iter().zip(&self.trial_gradient).map(|(here, there)| (here - there) / probe);
+        let change: Vec<f64> = change.collect();
+        self.cloth.collect(&change, &mut self.reduced);
         self.factor.solve(self.cloth.pattern(), &mut self.reduced);
-        for (value, &coordinate) in self.reduced.iter().zip(unknowns) {
-            self.step[coordinate] = *value;
-            state[coordinate] += value;
-        }
+        self.cloth.spread(&self.reduced, &mut self.step);
+        let free = self.cloth.free_coordinates().iter();
+        free.for_each(|&(coordinate, unknown)| state[coordinate] += self.reduced[unknown]);
         self.cloth.predicted_strains(x, &self.step, &mut self.mixed);
     }
 }
@@ -115,7 +114,7 @@ struct Follower {
 /// The motions of all clips, and one of what is held by none.
 fn motions(cloth: &Cloth, x: &[f64], target: &[f64]) -> Vec<Motion> {
     let mut free = vec![false; cloth.nodes()];
-    cloth.unknown_coordinates().iter().for_each(|coordinate| free[coordinate / 3] = true);
+    cloth.free_coordinates().iter().for_each(|(coordinate, _)| free[coordinate / 3] = true);
     let mut clips: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
     for node in (0..cloth.nodes()).filter(|&node| !free[node]) {
         clips.entry(cloth.clip_of(node)).or_default().push(node);

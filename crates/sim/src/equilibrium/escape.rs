@@ -60,9 +60,7 @@ impl Solver<'_> {
             return None;
         }
         let mut direction = vec![0.0; 3 * self.cloth.nodes()];
-        for (value, &coordinate) in self.reduced.iter().zip(self.cloth.unknown_coordinates()) {
-            direction[coordinate] = *value;
-        }
+        self.cloth.spread(&self.reduced, &mut direction);
         let length = |node: &[f64]| node.iter().map(|d| d * d).sum::<f64>().sqrt();
         let largest = direction.chunks_exact(3).map(length).fold(0.0, f64::max);
         let scale = STEP * self.cloth.mean_edge() / largest;
