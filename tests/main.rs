@@ -5,3 +5,4 @@
 mod bending;
 mod closed_form;
 mod recovery;
+mod shear;

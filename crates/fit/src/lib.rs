@@ -53,6 +53,7 @@
 //! # Ok::<(), cloth_fit::error::Error>(())
 //! ```
 
+mod boundary;
 pub mod error;
 pub mod frame;
 pub mod gap;

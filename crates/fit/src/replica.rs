@@ -74,6 +74,9 @@ pub struct Replica {
     lines: Option<Lines>,
     /// Per node: noise of its coordinates as a share of a vertex's, since a node between vertices sees their mean.
     pub spread: Vec<f64>,
+    /// Noise of the place of a held line off a table, as a share of a vertex's: the line is the mean of many. 0 between
+    /// clips.
+    pub held_spread: f64,
 }
 
 /// One frame of a replica.
@@ -162,6 +165,7 @@ impl Replica {
                 .iter()
                 .map(|s| s.weights.iter().map(|w| w * w).sum::<f64>().sqrt())
                 .collect(),
+            held_spread: 0.0,
             specimen,
         };
         match (sequence.clips.is_empty(), sequence.table) {
@@ -313,7 +317,7 @@ impl Replica {
             let cloth = match cloth_of.get(&held) {
                 Some(&known) => known,
                 None => {
-                    let nodes: Vec<Held> = lines.first(held).map(|node| Held { node, clip: None }).collect();
+                    let nodes: Vec<Held> = lines.held(held).collect();
                     let tied = lines.beyond(held);
                     self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, tied, false)?);
                     cloth_of.insert(held, self.cloths.len() - 1);
@@ -324,6 +328,7 @@ impl Replica {
             let (extension, start, forces) = (length, smooth, Vec::new());
             self.frames.push(ReplicaFrame { index, cloth, phase, extension, start, observed, forces });
         }
+        self.held_spread = lines.spread(&self.spread);
         self.lines = Some(lines);
         Ok(())
     }

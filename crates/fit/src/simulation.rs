@@ -12,6 +12,7 @@
 //!
 //! Source: Miguel et al. 2012, eqs. 7–9; without the μI that they keep in K (docs/model.md).
 
+use crate::boundary::Whitening;
 use crate::gauss_newton::{Evaluation, Residuals};
 use crate::replica::{Replica, ReplicaFrame};
 use crate::robust::Robust;
@@ -101,6 +102,9 @@ struct State {
     sensitivity: Vec<f64>,
     /// An unstable equilibrium was met and left: others may exist.
     escaped: bool,
+    /// How errors of what is held enter; taken where a level of the curve's growth begins, and kept, so that its
+    /// objective is one function.
+    whitening: Option<Whitening>,
 }
 
 /// A frame's share of an evaluation.
@@ -204,9 +208,8 @@ impl<'a> Simulation<'a> {
         let mut sizes: Vec<f64> = Vec::new();
         for (&(replica, frame), result) in self.frames.iter().zip(&results) {
             let replica = &self.replicas[replica];
-            let frame = &replica.frames[frame];
-            let measured = measured(replica, frame, self.task.objective).zip(self.scales(replica, frame));
-            sizes.extend(measured.zip(&result.simulated).map(|((m, scale), s)| ((m - s) / scale).abs()));
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, 0);
+            sizes.extend(rows.iter().map(|residual| residual.abs()));
         }
         sizes.sort_by(f64::total_cmp);
         sizes.get(sizes.len() / 2).map_or(0.0, |median| 1.4826 * median)
@@ -217,6 +220,7 @@ impl<'a> Simulation<'a> {
         self.curve = curve;
         // Sensitivities belong to the old control values.
         self.states.iter_mut().for_each(|state| state.sensitivity.clear());
+        self.states.iter_mut().for_each(|state| state.whitening = None);
     }
 
     /// The curve of the last evaluation.
@@ -341,13 +345,12 @@ impl<'a> Simulation<'a> {
         let results = self.solve_frames(&curves, groups, None);
         let columns: usize =
             groups.iter().map(|group| curves.get(group[0]).map_or(0, StiffnessCurve::len)).sum();
-        let scaled = self.frames.iter().zip(&results).flat_map(|(&(replica, frame), result)| {
+        let mut values = Vec::new();
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
             let replica = &self.replicas[replica];
-            let scales = self.scales(replica, &replica.frames[frame]);
-            let rows = result.derivatives.chunks_exact(columns.max(1));
-            rows.zip(scales).flat_map(|(row, scale)| row.iter().map(move |d| d / scale))
-        });
-        let values: Vec<f64> = scaled.collect();
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, columns);
+            values.extend(rows.columns(1, columns).transpose().iter());
+        }
         DMatrix::from_row_slice(values.len() / columns.max(1), columns, &values)
     }
 
@@ -438,7 +441,12 @@ impl<'a> Simulation<'a> {
             escaped = found.escaped;
         }
         let mut result = FrameResult {
-            state: State { x, sensitivity: Vec::new(), escaped: state.escaped || escaped },
+            state: State {
+                x,
+                sensitivity: Vec::new(),
+                escaped: state.escaped || escaped,
+                whitening: state.whitening.clone(),
+            },
             status: found.status,
             forces: Vec::new(),
             simulated: Vec::new(),
@@ -484,10 +492,49 @@ impl<'a> Simulation<'a> {
                 let seen = seen_unknowns(replica, frame).map(|(unknown, _)| unknown);
                 let row = |unknown| (0..columns.len()).map(move |k| k * unknowns + unknown);
                 result.derivatives = seen.flat_map(row).map(|place| sensitivity[place]).collect();
+                if result.state.whitening.is_none() && replica.held_spread > 0.0 {
+                    result.state.whitening = Some(whitening(solver, replica, frame));
+                }
             }
         }
         result.state.sensitivity = sensitivity;
     }
+}
+
+impl Simulation<'_> {
+    /// A frame's residuals, and in further columns their derivatives, all in units of independent noise.
+    fn residual_rows(
+        &self,
+        replica: &Replica,
+        frame: &ReplicaFrame,
+        result: &FrameResult,
+        points: usize,
+    ) -> DMatrix<f64> {
+        let scales: Vec<f64> = self.scales(replica, frame).collect();
+        let mut rows = DMatrix::zeros(scales.len(), points + 1);
+        let measured = measured(replica, frame, self.task.objective);
+        for (i, ((measured, simulated), scale)) in measured.zip(&result.simulated).zip(&scales).enumerate() {
+            rows[(i, 0)] = (measured - simulated) / scale;
+            (0..points).for_each(|k| rows[(i, k + 1)] = result.derivatives[i * points + k] / scale);
+        }
+        if let Some(whitening) = &result.state.whitening {
+            whitening.apply(&mut rows);
+        }
+        rows
+    }
+}
+
+/// How the places of the last held lines enter the positions that are compared.
+fn whitening(solver: &mut Solver<'_>, replica: &Replica, frame: &ReplicaFrame) -> Whitening {
+    let unknowns = replica.cloth(frame).unknowns();
+    let mut modes: Vec<f64> = solver.border().iter().map(|k| -k).collect();
+    solver.solve_linear(&mut modes);
+    let seen: Vec<(usize, usize)> = seen_unknowns(replica, frame).collect();
+    let columns = modes.len() / unknowns.max(1);
+    Whitening::new(DMatrix::from_fn(seen.len(), columns, |i, j| {
+        let (unknown, coordinate) = seen[i];
+        modes[j * unknowns + unknown] * replica.held_spread / replica.spread[coordinate / 3]
+    }))
 }
 
 impl Residuals for Simulation<'_> {
@@ -514,16 +561,11 @@ impl Residuals for Simulation<'_> {
         let (mut residual, mut derivatives) = (Vec::new(), Vec::new());
         for (&(replica, frame), result) in self.frames.iter().zip(&results) {
             let replica = &self.replicas[replica];
-            let frame = &replica.frames[frame];
-            let measured = measured(replica, frame, self.task.objective);
-            let rows = result.derivatives.chunks_exact(point.len());
-            let scales = self.scales(replica, frame);
-            for (((measured, simulated), row), scale) in measured.zip(&result.simulated).zip(rows).zip(scales)
-            {
-                let plain = (measured - simulated) / scale;
-                let (value, slope) = self.task.robust.map_or((plain, 1.0), |robust| robust.bend(plain));
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, point.len());
+            for row in rows.row_iter() {
+                let (value, slope) = self.task.robust.map_or((row[0], 1.0), |robust| robust.bend(row[0]));
                 residual.push(value);
-                derivatives.extend(row.iter().map(|d| d * slope / scale));
+                derivatives.extend(row.iter().skip(1).map(|d| d * slope));
             }
         }
         let rows = residual.len();

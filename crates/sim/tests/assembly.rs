@@ -6,7 +6,7 @@
 //!  ▌▁▁▁▁▁▐   passes  1e-6 relative; forces turn with a rigid motion to 1e-9 (a kilometre away: 1e-6)
 //! ```
 
-use cloth_sim::cloth::{Cloth, ForceScale};
+use cloth_sim::cloth::{Cloth, ForceScale, Problem};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::element::Curvature;
 use cloth_sim::finite_difference::derivative_error;
@@ -96,6 +96,44 @@ fn the_hessian_and_the_clip_border_are_derivatives_of_the_gradient() {
             free.chain(forces.iter().flat_map(|f| [f.x, f.y, f.z])).collect::<Vec<_>>()
         };
         let error = derivative_error(value, &rows, &at, 1e-6, 0.0);
+        assert!(error < 1e-6, "{name}: {error:e}");
+    }
+}
+
+#[test]
+fn nodes_that_move_alike_share_their_unknowns() {
+    for (name, sample) in cases() {
+        let held = |node: &usize| !sample.held.iter().any(|held| held.node == *node);
+        let free: Vec<usize> = (0..sample.mesh.len()).filter(held).collect();
+        // Groups of neighbours, which share elements, and of nodes apart.
+        let tied = vec![free[..4].to_vec(), vec![free[5], free[free.len() - 1]]];
+        let components: Vec<Component> = sample.curves.components().collect();
+        let cloth = Cloth::new(&Problem {
+            mesh: &sample.mesh,
+            model: sample.model,
+            components: &components,
+            areal_density: sample.areal_density,
+            gravity: sample.gravity,
+            held: &sample.held,
+            tied: &tied,
+            planar: sample.planar,
+        })
+        .unwrap();
+        let plain = sample.cloth().unwrap();
+        assert_eq!(plain.unknowns() - cloth.unknowns(), 4 * if sample.planar { 2 } else { 3 });
+        let mut values = Vec::new();
+        cloth.hessian(&sample.curves, &sample.start, Curvature::Full, &mut values);
+        let value = |change: &[f64]| {
+            let mut moved = vec![0.0; sample.start.len()];
+            cloth.spread(change, &mut moved);
+            moved.iter_mut().zip(&sample.start).for_each(|(moved, x)| *moved += x);
+            let (_, gradient, _) = gradient(&cloth, &sample.curves, &moved);
+            let mut forces = vec![0.0; cloth.unknowns()];
+            cloth.collect(&gradient, &mut forces);
+            forces
+        };
+        let rows: Vec<f64> = dense(&cloth, &values).iter().copied().collect();
+        let error = derivative_error(value, &rows, &vec![0.0; cloth.unknowns()], 1e-6, 0.0);
         assert!(error < 1e-6, "{name}: {error:e}");
     }
 }

@@ -8,12 +8,13 @@
 //! ```
 //!
 //! To hold only what lies on the table would make the fitted rigidity 33–150 % too large: the cloth bends at the edge
-//! itself, which falls between two lines. Each line is seen by many nodes: a straight line through them is what is held.
+//! itself, which falls between two lines. Each line is seen by many nodes: their middle is what is held.
 
 use super::bad_geometry;
 use crate::error::Result;
 use crate::frame::Sequence;
 use crate::specimen::Specimen;
+use cloth_sim::load::Held;
 use nalgebra::Vector3;
 
 /// Lines past the edge that are held.
@@ -100,10 +101,12 @@ impl Lines {
         if on_table == 0 || held + FEWEST_FREE > self.nodes.len() {
             return None;
         }
+        // All lines are parallel: tilts of their own, which noise gives them, would strain a sheet that bends as a cylinder.
+        let along = straight.iter().map(|line| line.slope).sum::<Vector3<f64>>().normalize();
         let mut smooth = vec![0.0; shape.len()];
         for (line, nodes) in straight.iter().zip(&self.nodes) {
             for &node in nodes {
-                let place = line.at(specimen.mesh.positions[node]);
+                let place = line.at(specimen.mesh.positions[node], &along);
                 smooth[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
             }
         }
@@ -112,9 +115,19 @@ impl Lines {
         Some(Overhang { held, length, smooth })
     }
 
-    /// The nodes of the first lines.
-    pub(super) fn first(&self, lines: usize) -> impl Iterator<Item = usize> + '_ {
-        self.nodes[..lines].iter().flatten().copied()
+    /// The nodes of the first lines, all held; the last two lines as clips 0 and 1, since their places and the slope
+    /// between them are what the free cloth feels.
+    pub(super) fn held(&self, lines: usize) -> impl Iterator<Item = Held> + '_ {
+        let clip = move |line: usize| (line + 2).checked_sub(lines);
+        let nodes = self.nodes[..lines].iter().enumerate();
+        nodes.flat_map(move |(line, nodes)| nodes.iter().map(move |&node| Held { node, clip: clip(line) }))
+    }
+
+    /// Noise of a line's mean, given that of its nodes.
+    pub(super) fn spread(&self, of_nodes: &[f64]) -> f64 {
+        let line = &self.nodes[0];
+        let square = line.iter().map(|&node| of_nodes[node] * of_nodes[node]).sum::<f64>();
+        square.sqrt() / line.len() as f64
     }
 
     /// All lines but the first. Each moves as a whole, so that the sheet bends as a cylinder.
@@ -172,8 +185,9 @@ impl Line {
         Some(Self { centre, slope: product / square, rest, along })
     }
 
-    fn at(&self, rest: Vector3<f64>) -> Vector3<f64> {
-        self.centre + self.slope * (rest - self.rest).dot(&self.along)
+    /// Where a node of the line is if the line runs in a direction.
+    fn at(&self, rest: Vector3<f64>, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.centre + direction * (rest - self.rest).dot(&self.along)
     }
 }
 
