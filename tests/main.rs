@@ -4,3 +4,4 @@
 
 mod closed_form;
 mod recovery;
+mod rig;

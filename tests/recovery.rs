@@ -10,7 +10,7 @@
 //! The stress comes back within 1 % without noise and within 2 % with it (relative L2 over the visited range), whatever
 //! else the sequence brings: weight, noise in the clips' poses, holes in the shapes, hysteresis.
 
-use cloth_fit::frame::{MeasurementSet, Phase};
+use cloth_fit::frame::{Kind, MeasurementSet, Phase};
 use cloth_fit::report::StageReport;
 use cloth_fit::rig::{KnownFabric, Rig};
 use cloth_fit::stage::stretch::{fit, predict};
@@ -26,7 +26,8 @@ fn denim() -> KnownFabric {
 }
 
 fn rig() -> Rig {
-    Rig { nodes: [31, 31], measured: [14, 14], ..Rig::default() }
+    let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
+    Rig { sequences, nodes: [31, 31], measured: [14, 14], ..Rig::default() }
 }
 
 fn measure(rig: &Rig) -> MeasurementSet {
@@ -205,7 +206,7 @@ fn a_pull_along_the_other_yarns_is_named() {
     let mut set = measure(&rig());
     // The warp test, labelled as one of weft.
     set.sequences.retain(|sequence| sequence.name == "stretch-warp");
-    set.sequences[0].kind = cloth_fit::frame::Kind::StretchWeft;
+    set.sequences[0].kind = Kind::StretchWeft;
     let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
     assert!(error.to_string().contains("check kind"), "{error}");
 }

@@ -2,7 +2,7 @@
 
 mod discrete_shell;
 
-pub use discrete_shell::Hinge;
+pub use discrete_shell::{HINGE_STRAIN_PER_CURVATURE, Hinge};
 
 use crate::error::Result;
 use crate::material::{Component, Model};

@@ -1,0 +1,70 @@
+//! The sheet that is measured: a rectangle with its yarns, somewhere in space, and regular grids over it.
+
+use crate::error::{Error, Result};
+use crate::frame::MeshPoint;
+use cloth_sim::mesh::{Diagonals, Grid, Mesh};
+use nalgebra::{Isometry3, Rotation2, Vector2, Vector3};
+
+/// A rectangle of cloth at rest. Its own coordinates run from 0 along its sides.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sheet {
+    /// Extents, m.
+    pub(super) size: [f64; 2],
+    /// Turns the sheet's coordinates into material ones: by 45° on a sheet cut on the bias.
+    pub(super) yarns: Rotation2<f64>,
+    /// Turns the sheet's coordinates into world ones.
+    pub(super) place: Isometry3<f64>,
+}
+
+impl Sheet {
+    /// A sheet cut along the yarns, in the plane z = 0 with weft along x.
+    pub(super) fn straight(size: [f64; 2]) -> Self {
+        Self { size, yarns: Rotation2::identity(), place: Isometry3::identity() }
+    }
+
+    /// A regular grid over the sheet.
+    pub(super) fn grid(&self, [columns, rows]: [usize; 2], diagonals: Diagonals) -> Grid {
+        let [width, height] = self.size;
+        Grid { columns, rows, width, height, diagonals }
+    }
+
+    /// The mesh of a grid over the sheet, in world coordinates.
+    pub(super) fn mesh(&self, grid: Grid) -> Result<Mesh> {
+        let mechanics = |source| Error::Mechanics { context: "rig, mesh".into(), source };
+        let mut mesh = grid.mesh().map_err(mechanics)?;
+        mesh.positions.iter_mut().for_each(|p| *p = self.at(p));
+        mesh.material.iter_mut().for_each(|m| *m = self.yarns * *m);
+        let checked = Mesh::new(mesh.positions, mesh.material, mesh.triangles).map_err(mechanics)?;
+        Ok(Mesh { grid: Some(grid), ..checked })
+    }
+
+    /// World coordinates of a point given in the sheet's own.
+    pub(super) fn at(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.place.rotation * point + self.place.translation.vector
+    }
+
+    /// The sheet's own coordinates of a point at rest, for a mesh's material coordinates.
+    pub(super) fn own(&self, material: &Vector2<f64>) -> Vector2<f64> {
+        self.yarns.inverse() * material
+    }
+
+    /// Where a vertex lies in the mesh of a grid whose cells are split by '\'.
+    ///
+    /// * `material` — the vertex's material coordinates, m
+    pub(super) fn locate(&self, grid: &Grid, material: &Vector2<f64>) -> MeshPoint {
+        let [dx, dy] = grid.cell();
+        let own = self.own(material);
+        let cell = |p: f64, count: usize| (p.max(0.0) as usize).min(count - 2);
+        let (x, y) = (own.x / dx, own.y / dy);
+        let (column, row) = (cell(x, grid.columns), cell(y, grid.rows));
+        let (s, t) = (x - column as f64, y - row as f64);
+        let first = 2 * (row * (grid.columns - 1) + column);
+        if s + t <= 1.0 {
+            // Low, right, up.
+            MeshPoint { triangle: first, weights: [1.0 - s - t, s, t] }
+        } else {
+            // Right, high, up.
+            MeshPoint { triangle: first + 1, weights: [1.0 - t, s + t - 1.0, 1.0 - s] }
+        }
+    }
+}
