@@ -167,8 +167,8 @@ fn a_picture_frame_stays_one() {
     assert!(axial > 0.5 * flat && axial < 1.5 * flat);
 }
 
-/// A stiff sheet droops by ρgL⁴/8D, if it may not twist: hinges along the cells' diagonals must be stiffer still, else those
-/// of an equal stiffness, all leaning one way, let it droop by a quarter more.
+/// A stiff sheet droops by ρgL⁴/8D, if it may not twist: hinges along the cells' diagonals must be stiffer
+/// still, else those of an equal stiffness, all leaning one way, let it droop by a quarter more.
 #[test]
 fn a_stiff_sheet_droops_like_a_beam() {
     let rigidity = 0.05;

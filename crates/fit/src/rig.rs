@@ -1,7 +1,8 @@
 //! The virtual measurement rig: a known cloth in, a measurement set out.
 //!
-//! The cloth is simulated on a finer mesh with other diagonals than the fit's, so that a fit is not tested on its own
-//! discretisation; what is "measured" is sampled from it on a third mesh, and the instruments add their noise.
+//! The cloth is simulated on a finer mesh with other diagonals than the fit's, so that a fit is not tested on
+//! its own discretisation; what is "measured" is sampled from it on a third mesh, and the instruments add
+//! their noise.
 //!
 //! ```text
 //! fabric.toml ──▶ simulation 61×61, '\' ──▶ vertices of the measured mesh  + 0.075 mm ──▶ positions.npy
@@ -106,8 +107,8 @@ impl Default for Rig {
 }
 
 impl Rig {
-    /// Measures a known fabric. The result is the same on any number of threads, and that of a sequence does not depend
-    /// on which others are made.
+    /// Measures a known fabric. The result is the same on any number of threads, and that of a sequence does
+    /// not depend on which others are made.
     ///
     /// # Errors
     /// Settings or a fabric that cannot be; a frame without a stable equilibrium.

@@ -33,8 +33,8 @@ const KNOWN: [(&str, &str); 4] = [
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct RigOptions {
-    /// A fabric that comes with the program (cotton-denim, cotton-satin, rayon-spandex-knit, wool-cotton), or a file
-    /// like fixtures/fabrics/cotton-denim.toml
+    /// A fabric that comes with the program (cotton-denim, cotton-satin, rayon-spandex-knit, wool-cotton), or
+    /// a file like fixtures/fabrics/cotton-denim.toml
     #[arg(long)]
     pub fabric: String,
     /// The measurement set to write; a set that the rig wrote there before is replaced
@@ -45,7 +45,8 @@ pub struct RigOptions {
     #[arg(long, value_delimiter = ',', value_parser = parse_kind, hide_default_value = true,
         default_values_t = KINDS)]
     pub sequences: Vec<Kind>,
-    /// Which sample of the fabric: 1 is the fabric itself, in any other each curve is stiffer or softer as a whole
+    /// Which sample of the fabric: 1 is the fabric itself, in any other each curve is stiffer or softer as a
+    /// whole
     #[arg(long, default_value_t = 1)]
     pub sample: usize,
     /// Columns and rows of the simulation: finer than a fit's

@@ -20,7 +20,8 @@ pub struct KnownFabric {
     pub height_m: f64,
     /// Mass per area, kg/m².
     pub areal_density_kg_m2: f64,
-    /// The model whose strains the curves are over; springs have no bending curve that could be told in curvatures.
+    /// The model whose strains the curves are over; springs have no bending curve that could be told in
+    /// curvatures.
     pub model: Model,
     /// Where its figures come from.
     #[serde(default)]

@@ -12,7 +12,8 @@ const POSITION_NOISE: f64 = 7.5e-5;
 /// Standard deviation of each component of a clip's force, N (Miguel et al. 2012, §3).
 const FORCE_NOISE: f64 = 3.0e-3;
 
-/// Friction of the cords, N: half the width of the hysteresis of about 0.1 N that it makes (Miguel et al. 2012, §3).
+/// Friction of the cords, N: half the width of the hysteresis of about 0.1 N that it makes (Miguel et al.
+/// 2012, §3).
 const CORD_FRICTION: f64 = 0.05;
 
 /// The instruments of one sequence.
@@ -44,7 +45,7 @@ impl<'a> Instruments<'a> {
     /// A cord's force as it is measured.
     ///
     /// ```text
-    /// fabric   hold × 2r/(1 + r) on loading, × 2/(1 + r) on unloading: their mean is the curve, their ratio r
+    /// fabric   hold × 2r/(1 + r) on loading, × 2/(1 + r) on unloading: the mean is the curve, the ratio r
     /// clip     cord + weight = hold
     /// cord     ± 0.05 N along the force: friction
     /// ```
@@ -65,8 +66,8 @@ impl<'a> Instruments<'a> {
         self.noisy(force, FORCE_NOISE)
     }
 
-    /// The clips' poses as they are seen: a clip through many vertices, but let us say through one at each of its ends.
-    /// Bars that are hinged together are seen as one frame, whose corners must meet.
+    /// The clips' poses as they are seen: a clip through many vertices, but let us say through one at each of
+    /// its ends. Bars that are hinged together are seen as one frame, whose corners must meet.
     ///
     /// * `length` — of the clips, m
     pub(super) fn poses(

@@ -16,8 +16,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// The test; its drive is the overhang, m. At rest the whole sheet lies on the table, up to the edge.
 ///
-/// A hinge stands for half a cell on both its sides: where the sheet is to bend from the edge on, the first row that
-/// bends lies half a cell beyond it. So overhangs are rounded to the middle between two rows of the simulation.
+/// A hinge stands for half a cell on both its sides: where the sheet is to bend from the edge on, the first
+/// row that bends lies half a cell beyond it. So overhangs are rounded to the middle between two rows of the
+/// simulation.
 ///
 /// * `nodes` — of the simulation
 pub(super) fn test(fabric: &KnownFabric, kind: Kind, nodes: [usize; 2], steps: Vec<Step>) -> Test {

@@ -5,8 +5,8 @@ use super::noise::stream;
 use rand_distr::{Distribution, StandardNormal};
 
 impl KnownFabric {
-    /// A sample of the fabric: the first is the fabric itself; in the others every curve is stiffer or softer as a whole,
-    /// by a factor exp(N(0, `sample_scatter`)) that depends on the number only.
+    /// A sample of the fabric: the first is the fabric itself; in the others every curve is stiffer or softer
+    /// as a whole, by a factor exp(N(0, `sample_scatter`)) that depends on the number only.
     ///
     /// Source: second samples, Miguel et al. 2012, §6; the law is ours.
     #[must_use]

@@ -13,8 +13,8 @@ pub(super) struct Step {
     pub(super) phase: Phase,
 }
 
-/// From rest to each of the ends in turn and back, in as many steps out as back, as often as there are cycles. The first
-/// step is at rest.
+/// From rest to each of the ends in turn and back, in as many steps out as back, as often as there are
+/// cycles. The first step is at rest.
 pub(super) fn there_and_back(ends: &[f64], frames: usize, cycles: usize) -> Vec<Step> {
     let mut steps = vec![Step { drive: 0.0, cycle: 0, phase: Phase::Hold }];
     for cycle in 0..cycles {

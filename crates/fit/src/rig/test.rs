@@ -102,7 +102,8 @@ impl Test {
         (0..mesh.len()).filter(|&vertex| grip.holds(&self.sheet.own(&mesh.material[vertex]))).collect()
     }
 
-    /// For every vertex the motions that hold it at a drive: none, one, or two where bars are hinged together.
+    /// For every vertex the motions that hold it at a drive: none, one, or two where bars are hinged
+    /// together.
     pub(super) fn holders(&self, mesh: &Mesh, motions: &[Isometry3<f64>]) -> Vec<Vec<usize>> {
         let vertices = 0..mesh.len();
         match &self.support {

@@ -1,7 +1,7 @@
 //! The truth: what the simulated sheet does in every frame of a test.
 //!
-//! By continuation: each frame starts from the equilibrium before it, moved along with what holds the sheet. So a sheet
-//! that has buckled to one side stays there, as in the laboratory.
+//! By continuation: each frame starts from the equilibrium before it, moved along with what holds the sheet.
+//! So a sheet that has buckled to one side stays there, as in the laboratory.
 
 use super::fabric::KnownFabric;
 use super::noise::stream;
@@ -24,9 +24,13 @@ pub(super) struct State {
     pub(super) motions: Vec<Isometry3<f64>>,
     /// Position of every vertex, m.
     pub(super) positions: Vec<Vector3<f64>>,
-    /// Force that holds each clip, apart from its own weight, N; none where the sheet is at rest and without weight.
+    /// Force that holds each clip, apart from its own weight, N; none where the sheet is at rest and without
+    /// weight.
     pub(super) holds: Vec<Vector3<f64>>,
 }
+
+/// What came of a solve: the forces that hold the clips, or how it failed.
+type Attempt = std::result::Result<Vec<Vector3<f64>>, Status>;
 
 /// A sheet under test.
 pub(super) struct Truth<'a> {
@@ -83,11 +87,7 @@ impl<'a> Truth<'a> {
     }
 
     /// Drives the test, in halves where it cannot be done at once.
-    fn advance(
-        &mut self,
-        drive: f64,
-        halvings: u32,
-    ) -> Result<std::result::Result<Vec<Vector3<f64>>, Status>> {
+    fn advance(&mut self, drive: f64, halvings: u32) -> Result<Attempt> {
         let from = self.drive;
         let at_once = self.solve(drive)?;
         if at_once.is_ok() || halvings == 0 || drive == from {
@@ -100,7 +100,7 @@ impl<'a> Truth<'a> {
     }
 
     /// Drives the test at once. Without success nothing has moved.
-    fn solve(&mut self, drive: f64) -> Result<std::result::Result<Vec<Vector3<f64>>, Status>> {
+    fn solve(&mut self, drive: f64) -> Result<Attempt> {
         let motions = (self.test.motion)(drive);
         let holders = self.test.holders(self.mesh, &motions);
         let mut x = self.start(&motions, &holders);
@@ -144,7 +144,8 @@ impl<'a> Truth<'a> {
         x
     }
 
-    /// The four corners of the sheet, and which motion each follows: what holds it, else what holds any vertex.
+    /// The four corners of the sheet, and which motion each follows: what holds it, else what holds any
+    /// vertex.
     fn corners(&self, holders: &[Vec<usize>]) -> [(usize, usize); 4] {
         let [right, above] = [self.grid.columns - 1, self.grid.rows - 1];
         [[0, 0], [right, 0], [0, above], [right, above]]
@@ -198,9 +199,9 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// Splits the force at a corner between the two bars that are hinged there: within their plane each takes what lies along
-/// it, across the plane each takes half. In homogeneous shear the traction on each side is along its bar, so that every
-/// bar gets stress × length exactly.
+/// Splits the force at a corner between the two bars that are hinged there: within their plane each takes
+/// what lies along it, across the plane each takes half. In homogeneous shear the traction on each side is
+/// along its bar, so that every bar gets stress × length exactly.
 fn split(force: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
     let normal = a.cross(&b);
     let area = normal.norm_squared();
@@ -224,7 +225,8 @@ fn settle(solver: &mut Solver<'_>, cloth: &Cloth, curves: &Curves, x: &mut [f64]
     found
 }
 
-/// Moves a state by up to so much, m, the way in which it is softest: inverse iteration from a random direction.
+/// Moves a state by up to so much, m, the way in which it is softest: inverse iteration from a random
+/// direction.
 fn disturb(solver: &mut Solver<'_>, cloth: &Cloth, x: &mut [f64], most: f64) {
     let mut random = stream(0, "disturbance");
     let mut direction: Vec<f64> = (0..cloth.unknowns()).map(|_| StandardNormal.sample(&mut random)).collect();
