@@ -68,6 +68,9 @@ pub struct Rig {
     pub sequences: Vec<Kind>,
     /// Columns and rows of the simulation; default 61×61.
     pub nodes: [usize; 2],
+    /// How the simulation's cells are split; default '\'. Under diagonals that all lean one way a sheet that
+    /// overhangs a table twists.
+    pub diagonals: Diagonals,
     /// Columns and rows of the measured mesh; default 100×100.
     pub measured: [usize; 2],
     /// Frames of one loading, and as many of its unloading; default 12.
@@ -93,6 +96,7 @@ impl Default for Rig {
         Self {
             sequences: KINDS.to_vec(),
             nodes: [61, 61],
+            diagonals: Diagonals::Backward,
             measured: [100, 100],
             frames: 12,
             cycles: 1,
@@ -204,7 +208,7 @@ impl Rig {
 
     fn sequence(&self, fabric: &KnownFabric, curves: &Curves, kind: Kind) -> Result<Sequence> {
         let test = self.test(fabric, kind);
-        let grid = test.sheet.grid(self.nodes, Diagonals::Backward);
+        let grid = test.sheet.grid(self.nodes, self.diagonals);
         let mesh = test.sheet.mesh(grid)?;
         let seen = test.sheet.mesh(test.sheet.grid(self.measured, Diagonals::Alternating))?;
         let states = Truth::new(&test, &mesh, &grid, fabric, curves).frames()?;

@@ -45,6 +45,15 @@ impl Grid {
         [self.width / (self.columns - 1) as f64, self.height / (self.rows - 1) as f64]
     }
 
+    /// True if a cell is split by '/'.
+    pub fn is_forward(&self, column: usize, row: usize) -> bool {
+        match self.diagonals {
+            Diagonals::Forward => true,
+            Diagonals::Backward => false,
+            Diagonals::Alternating => (column + row).is_multiple_of(2),
+        }
+    }
+
     /// The grid as a flat mesh in the plane z = 0; material coordinates equal x and y.
     ///
     /// # Errors
@@ -73,12 +82,7 @@ impl Grid {
             for column in 0..self.columns - 1 {
                 let [low, right] = [self.node(column, row), self.node(column + 1, row)];
                 let [up, high] = [self.node(column, row + 1), self.node(column + 1, row + 1)];
-                let forward = match self.diagonals {
-                    Diagonals::Forward => true,
-                    Diagonals::Backward => false,
-                    Diagonals::Alternating => (column + row) % 2 == 0,
-                };
-                if forward {
+                if self.is_forward(column, row) {
                     triangles.extend([[low, right, high], [low, high, up]]);
                 } else {
                     triangles.extend([[low, right, up], [right, high, up]]);

@@ -96,6 +96,7 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
         cord_hysteresis: options.cord_hysteresis,
         fabric_hysteresis: options.fabric_hysteresis,
         seed: options.seed,
+        ..Rig::default()
     };
     refuse_measured(&options.out)?;
     let progress = Progress::new(&format!("measuring {}", fabric.name), !telling.quiet);

@@ -48,7 +48,7 @@ impl Sheet {
         self.yarns.inverse() * material
     }
 
-    /// Where a vertex lies in the mesh of a grid whose cells are split by '\'.
+    /// Where a vertex lies in the mesh of a grid.
     ///
     /// * `material` — the vertex's material coordinates, m
     pub(super) fn locate(&self, grid: &Grid, material: &Vector2<f64>) -> MeshPoint {
@@ -59,12 +59,33 @@ impl Sheet {
         let (column, row) = (cell(x, grid.columns), cell(y, grid.rows));
         let (s, t) = (x - column as f64, y - row as f64);
         let first = 2 * (row * (grid.columns - 1) + column);
-        if s + t <= 1.0 {
-            // Low, right, up.
-            MeshPoint { triangle: first, weights: [1.0 - s - t, s, t] }
-        } else {
-            // Right, high, up.
-            MeshPoint { triangle: first + 1, weights: [1.0 - t, s + t - 1.0, 1.0 - s] }
+        let second = first + 1;
+        // The corners of a cell are low, right, up and high: Grid::mesh.
+        match (grid.is_forward(column, row), s >= t, s + t <= 1.0) {
+            (true, true, _) => MeshPoint { triangle: first, weights: [1.0 - s, s - t, t] },
+            (true, false, _) => MeshPoint { triangle: second, weights: [1.0 - t, s, t - s] },
+            (false, _, true) => MeshPoint { triangle: first, weights: [1.0 - s - t, s, t] },
+            (false, _, false) => MeshPoint { triangle: second, weights: [1.0 - t, s + t - 1.0, 1.0 - s] },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_vertex_is_found_where_it_lies() {
+        let sheet = Sheet { yarns: Rotation2::new(0.3), ..Sheet::straight([0.1, 0.07]) };
+        let seen = sheet.mesh(sheet.grid([13, 9], Diagonals::Forward)).unwrap();
+        for diagonals in [Diagonals::Forward, Diagonals::Backward, Diagonals::Alternating] {
+            let grid = sheet.grid([6, 5], diagonals);
+            let mesh = sheet.mesh(grid).unwrap();
+            for (position, material) in seen.positions.iter().zip(&seen.material) {
+                let point = sheet.locate(&grid, material);
+                assert!(point.weights.iter().all(|&weight| weight > -1e-12));
+                assert!((point.interpolate(&mesh, &mesh.positions) - position).norm() < 1e-9);
+            }
         }
     }
 }
