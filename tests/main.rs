@@ -5,4 +5,5 @@
 mod bending;
 mod closed_form;
 mod recovery;
+mod rig;
 mod shear;

@@ -27,7 +27,8 @@ fn denim() -> KnownFabric {
 }
 
 fn rig() -> Rig {
-    Rig { nodes: [31, 31], measured: [14, 14], ..Rig::default() }
+    let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
+    Rig { sequences, nodes: [31, 31], measured: [14, 14], ..Rig::default() }
 }
 
 fn measure(rig: &Rig) -> MeasurementSet {

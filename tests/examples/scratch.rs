@@ -36,18 +36,38 @@ fn main() {
         }
     }
     {
-        use cloth_sim::material::*; use cloth_sim::curve::*; use cloth_sim::equilibrium::*;
+        use cloth_sim::curve::*;
+        use cloth_sim::equilibrium::*;
+        use cloth_sim::material::*;
         let mut curves = Curves::default();
-        for c in Component::ALL { let k = if c.is_stretch() { 2000.0 } else if c.is_bending() { truth / 3.0 } else { 200.0 };
-            curves.set(c, StiffnessCurve::constant(k, Model::Stvk.negative_strain(c, Compression::ZeroStrain)).unwrap()); }
-        let r = &replicas[0]; println!("held spread {} spread {:?}", r.held_spread, &r.spread[..6]);
+        for c in Component::ALL {
+            let k = if c.is_stretch() {
+                2000.0
+            } else if c.is_bending() {
+                truth / 3.0
+            } else {
+                200.0
+            };
+            curves.set(
+                c,
+                StiffnessCurve::constant(k, Model::Stvk.negative_strain(c, Compression::ZeroStrain)).unwrap(),
+            );
+        }
+        let r = &replicas[0];
+        println!("held spread {} spread {:?}", r.held_spread, &r.spread[..6]);
         for f in &r.frames {
-        let mut solver = Solver::new(r.cloth(f)); let mut x = f.start.clone();
-        let e = solver.solve(&curves, &mut x, &cloth_sim::equilibrium::Settings::default());
-        print!("{} {:?} {}: ", f.index, e.status, e.iterations);
-        let o = f.observed.as_ref().unwrap();
-        let g = r.specimen.grid;
-        for c in 0..25 { let m = |v: &[f64], i: usize| (0..25).map(|row| v[3*g.node(c,row)+i]).sum::<f64>()/25.0; print!("{:.3},{:.3} ", 1e3*(m(&x,0)-m(o,0)), 1e3*(m(&x,2)-m(o,2))); } println!();
+            let mut solver = Solver::new(r.cloth(f));
+            let mut x = f.start.clone();
+            let e = solver.solve(&curves, &mut x, &cloth_sim::equilibrium::Settings::default());
+            print!("{} {:?} {}: ", f.index, e.status, e.iterations);
+            let o = f.observed.as_ref().unwrap();
+            let g = r.specimen.grid;
+            for c in 0..25 {
+                let m =
+                    |v: &[f64], i: usize| (0..25).map(|row| v[3 * g.node(c, row) + i]).sum::<f64>() / 25.0;
+                print!("{:.3},{:.3} ", 1e3 * (m(&x, 0) - m(o, 0)), 1e3 * (m(&x, 2) - m(o, 2)));
+            }
+            println!();
         }
     }
     let report = fit(&set, &[Stage::Bend], &Knowledge::default(), &settings, &mut Watch::default()).unwrap();

@@ -235,6 +235,8 @@ fn a_rig_makes_a_set_that_can_be_fitted() {
             "5x5",
             "--frames",
             "6",
+            "--sequences",
+            "stretch-weft,stretch-warp",
         ];
         assert!(run(&arguments).status.success());
     }

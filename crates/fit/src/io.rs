@@ -25,7 +25,7 @@ pub mod table;
 mod test_file;
 #[cfg(test)]
 mod tests;
-mod toml_file;
+pub(crate) mod toml_file;
 mod unit;
 
 use crate::error::{Error, Result};

@@ -34,13 +34,15 @@
 //! A known cloth is measured on the virtual rig and comes back from its forces.
 //!
 //! ```
+//! use cloth_fit::frame::Kind;
 //! use cloth_fit::rig::{KnownFabric, Rig};
 //! use cloth_fit::stage::{Settings, Watch, stretch};
 //! use cloth_sim::material::Component;
 //! # let text = include_str!("../../../fixtures/fabrics/cotton-denim.toml");
 //!
 //! let fabric = KnownFabric::parse("cotton-denim.toml".as_ref(), text)?;
-//! let set = Rig { nodes: [13, 13], measured: [5, 5], ..Rig::default() }.measure(&fabric)?;
+//! let sequences = vec![Kind::StretchWeft];
+//! let set = Rig { sequences, nodes: [13, 13], measured: [5, 5], ..Rig::default() }.measure(&fabric)?;
 //! let settings = Settings { nodes: Some([7, 7]), ..Settings::default() };
 //! let weft = stretch::fit(&set, Component::StretchWeft, &settings, &mut Watch::default())?;
 //! let weft = weft.expect("the rig pulls along weft");

@@ -1,55 +1,91 @@
 //! The virtual measurement rig: a known cloth in, a measurement set out.
 //!
-//! The cloth is simulated on a finer mesh with other diagonals than the fit's, so that a fit is not tested on its own
-//! discretisation; what is "measured" is sampled from it on a third mesh, and the instruments add their noise.
+//! The cloth is simulated on a finer mesh with other diagonals than the fit's, so that a fit is not tested on
+//! its own discretisation; what is "measured" is sampled from it on a third mesh, and the instruments add
+//! their noise.
 //!
 //! ```text
 //! fabric.toml ──▶ simulation 61×61, '\' ──▶ vertices of the measured mesh  + 0.075 mm ──▶ positions.npy
 //!                                      └──▶ forces of the cords on the clips + 3 mN    ──▶ forces.csv
 //! ```
 //!
-//! Source: Miguel et al. 2012, §3 (specimen, clips, instruments and their accuracy).
+//! | sequence | held by | driven |
+//! |---|---|---|
+//! | stretch-weft, stretch-warp | two bars | apart and back; in the plane, without weight |
+//! | shear | four hinged bars: a picture frame | sheared and back |
+//! | bend-weft, bend-warp, bend-bias | a table | off its edge |
+//! | complex-shear | two bars | along each other and back |
+//! | corner-pull | four small clips | one diagonal pair apart and back, then the other |
+//!
+//! Source: Miguel et al. 2012, §3 (specimen, clips, tests, instruments and their accuracy).
 
+mod complex_shear;
+mod corner_pull;
 mod fabric;
+mod noise;
+mod overhang;
+mod picture_frame;
+mod sample;
+mod schedule;
+mod sheet;
+mod stretch;
+mod test;
+mod truth;
 
-pub use fabric::{ControlPoints, KnownFabric};
+pub use fabric::{BendingPoints, KnownCurves, KnownFabric, LargestExtension, MembranePoints};
 
 use crate::error::{Error, Result};
-use crate::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Phase, Sequence};
-use crate::specimen::Specimen;
-use cloth_sim::cloth::{Cloth, Problem};
-use cloth_sim::equilibrium::{self, Solver};
-use cloth_sim::load::Held;
-use cloth_sim::material::{Component, Curves};
-use cloth_sim::mesh::{Diagonals, Grid};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-use rand::{SeedableRng, rngs::StdRng};
-use rand_distr::{Distribution, StandardNormal};
+use crate::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Sequence};
+use cloth_sim::material::Curves;
+use cloth_sim::mesh::Diagonals;
+use nalgebra::Vector3;
+use noise::Instruments;
+use rayon::prelude::*;
+use schedule::{Step, outward, there_and_back};
+use std::collections::BTreeSet;
+use test::{Support, Test};
+use truth::{State, Truth};
 
-/// Standard deviation of each coordinate of an observed vertex, m (checklist: camera calibration).
-const POSITION_NOISE: f64 = 7.5e-5;
+/// The tests that the rig can make, in the order of their names.
+pub const KINDS: [Kind; 8] = [
+    Kind::BendBias,
+    Kind::BendWarp,
+    Kind::BendWeft,
+    Kind::ComplexShear,
+    Kind::CornerPull,
+    Kind::Shear,
+    Kind::StretchWarp,
+    Kind::StretchWeft,
+];
 
-/// Standard deviation of each component of a clip's force, N (checklist: load cells).
-const FORCE_NOISE: f64 = 3.0e-3;
-
-/// Mass of a long bar clip, kg.
-const BAR_MASS: f64 = 0.0133;
+/// Time between two frames, s (Miguel et al. 2012, §3).
+const FRAME_TIME: f64 = 2.0;
 
 /// What is measured, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
+    /// The tests to make; default all of [`KINDS`].
+    pub sequences: Vec<Kind>,
     /// Columns and rows of the simulation; default 61×61.
     pub nodes: [usize; 2],
-    /// Columns and rows of the measured mesh; default 21×21.
+    /// How the simulation's cells are split; default '\'.
+    pub diagonals: Diagonals,
+    /// Columns and rows of the measured mesh; default 100×100.
     pub measured: [usize; 2],
-    /// Frames of one pull, and as many of its release; default 12.
+    /// Frames of one loading, and as many of its unloading; default 12.
     pub frames: usize,
-    /// Pulls; default 1.
+    /// Loadings, but in bending, where the sheet is pushed out once; default 1.
     pub cycles: usize,
     /// Noise of the instruments; default on.
     pub noise: bool,
     /// Noise of the clips' poses too, as of a single vertex; default off.
     pub clip_noise: bool,
+    /// Friction of the cords: clip forces 0.05 N larger on loading and smaller on unloading; default off.
+    pub cord_hysteresis: bool,
+    /// The fabric's own hysteresis, by its `loading_ratio`; default off.
+    pub fabric_hysteresis: bool,
+    /// Which sample of the fabric; the first, the default, is the fabric itself. See [`KnownFabric::sample`].
+    pub sample: usize,
     /// Seed of all noise; default 1.
     pub seed: u64,
 }
@@ -57,48 +93,47 @@ pub struct Rig {
 impl Default for Rig {
     fn default() -> Self {
         Self {
+            sequences: KINDS.to_vec(),
             nodes: [61, 61],
-            measured: [21, 21],
+            diagonals: Diagonals::Backward,
+            measured: [100, 100],
             frames: 12,
             cycles: 1,
             noise: true,
             clip_noise: false,
+            cord_hysteresis: false,
+            fabric_hysteresis: false,
+            sample: 1,
             seed: 1,
         }
     }
 }
 
 impl Rig {
-    /// Measures a known fabric: one stretch sequence along weft, one along warp.
+    /// Measures a known fabric. The result is the same on any number of threads, and that of a sequence does
+    /// not depend on which others are made.
     ///
     /// # Errors
-    /// Settings or a fabric that cannot be; a frame without an equilibrium.
+    /// Settings or a fabric that cannot be; a frame without a stable equilibrium.
     pub fn measure(&self, fabric: &KnownFabric) -> Result<MeasurementSet> {
         self.validate()?;
+        let fabric = fabric.sample(self.sample);
         let curves = fabric.curves()?;
-        let mut random = StdRng::seed_from_u64(self.seed);
-        let sequences = [Kind::StretchWarp, Kind::StretchWeft]
-            .into_iter()
-            .map(|kind| self.stretch(fabric, &curves, kind, &mut random))
+        let mut sequences: Vec<Sequence> = self
+            .sequences
+            .par_iter()
+            .map(|&kind| self.sequence(&fabric, &curves, kind))
             .collect::<Result<_>>()?;
-        let noise = match (self.noise, self.clip_noise) {
-            (false, _) => "no noise",
-            (true, false) => "noise of vertices and forces",
-            (true, true) => "noise of vertices, forces and clip poses",
-        };
-        let source = format!(
-            "virtual rig: {} on {}x{} nodes, seen on {}x{}, {noise}, seed {}",
-            fabric.model, self.nodes[0], self.nodes[1], self.measured[0], self.measured[1], self.seed
-        );
+        sequences.sort_by(|a, b| a.name.cmp(&b.name));
         Ok(MeasurementSet {
             fabric: Fabric {
-                name: fabric.name.clone(),
+                source: Some(self.source(&fabric)),
+                name: fabric.name,
                 width_m: fabric.width_m,
                 height_m: fabric.height_m,
                 areal_density_kg_m2: fabric.areal_density_kg_m2,
                 thickness_m: None,
-                source: Some(source),
-                notes: fabric.notes.clone(),
+                notes: fabric.notes,
             },
             sequences,
         })
@@ -123,160 +158,116 @@ impl Rig {
                 "at least one frame and cycle, and at most 10000 in all",
             );
         }
+        if self.sample == 0 {
+            return setting("sample", "0".into(), "1 for the fabric itself, or more");
+        }
+        let once: BTreeSet<Kind> = self.sequences.iter().copied().collect();
+        if once.is_empty() || once.len() < self.sequences.len() || once.contains(&Kind::StretchBias) {
+            let names = |kinds: &[Kind]| kinds.iter().map(Kind::to_string).collect::<Vec<_>>().join(", ");
+            let found = if once.is_empty() { "none".into() } else { names(&self.sequences) };
+            return setting("sequences", found, &format!("some of {}, each once", names(&KINDS)));
+        }
         Ok(())
     }
 
-    /// Two bars on opposite sides, pulled apart and let back.
-    fn stretch(
-        &self,
-        fabric: &KnownFabric,
-        curves: &Curves,
-        kind: Kind,
-        random: &mut StdRng,
-    ) -> Result<Sequence> {
-        let along_weft = kind == Kind::StretchWeft;
-        let (component, direction) = if along_weft {
-            (Component::StretchWeft, Vector3::x())
-        } else {
-            (Component::StretchWarp, Vector3::y())
+    /// What the set says of its origin.
+    fn source(&self, fabric: &KnownFabric) -> String {
+        let [[a, b], [c, d]] = [self.nodes, self.measured];
+        let mut source = format!("virtual rig: {} on {a}x{b} nodes, seen on {c}x{d}", fabric.model);
+        source += match (self.noise, self.clip_noise) {
+            (false, _) => ", no noise",
+            (true, false) => ", noise of vertices and forces",
+            (true, true) => ", noise of vertices, forces and clip poses",
         };
-        let length = if along_weft { fabric.width_m } else { fabric.height_m };
-        let largest = fabric.largest_extension(component)? * length;
-        let grid = |[columns, rows]: [usize; 2], diagonals| Grid {
-            columns,
-            rows,
-            width: fabric.width_m,
-            height: fabric.height_m,
-            diagonals,
+        if self.cord_hysteresis {
+            source += ", friction of cords";
+        }
+        if self.fabric_hysteresis {
+            source += &format!(", loading {} times unloading", fabric.loading_ratio);
+        }
+        format!("{source}, seed {}", self.seed)
+    }
+
+    fn test(&self, fabric: &KnownFabric, kind: Kind) -> Test {
+        let back = |ends: &[f64]| there_and_back(ends, self.frames, self.cycles);
+        match kind {
+            Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias => {
+                stretch::test(fabric, kind, back(&[stretch::largest(fabric, kind)]))
+            }
+            Kind::Shear => picture_frame::test(fabric, back(&[fabric.largest_shear_rad])),
+            Kind::BendWeft | Kind::BendWarp | Kind::BendBias => {
+                overhang::test(fabric, kind, self.nodes, outward(fabric.overhang_m, self.frames))
+            }
+            Kind::ComplexShear => complex_shear::test(fabric, back(&[fabric.complex_shear_m])),
+            Kind::CornerPull => {
+                corner_pull::test(fabric, back(&[fabric.corner_pull_m, -fabric.corner_pull_m]))
+            }
+        }
+    }
+
+    fn sequence(&self, fabric: &KnownFabric, curves: &Curves, kind: Kind) -> Result<Sequence> {
+        let test = self.test(fabric, kind);
+        let grid = test.sheet.grid(self.nodes, self.diagonals);
+        let mesh = test.sheet.mesh(grid)?;
+        let seen = test.sheet.mesh(test.sheet.grid(self.measured, Diagonals::Alternating))?;
+        let states = Truth::new(&test, &mesh, &grid, fabric, curves).frames()?;
+        let samples: Vec<_> = seen.material.iter().map(|m| test.sheet.locate(&grid, m)).collect();
+        let shape = |state: &State| -> Vec<Vector3<f64>> {
+            samples.iter().map(|sample| sample.interpolate(&mesh, &state.positions)).collect()
         };
-        let mechanics = |source| Error::Mechanics { context: format!("rig, {kind}"), source };
-        let seen = grid(self.measured, Diagonals::Alternating).mesh().map_err(mechanics)?;
-        let end = |place: f64, positions: &[Vector3<f64>]| -> Vec<usize> {
-            let at = |p: &Vector3<f64>| (p.dot(&direction) - place).abs() < 1e-9 * length;
-            (0..positions.len()).filter(|&node| at(&positions[node])).collect()
-        };
-        let clip = |name: &str, place| Clip {
-            name: name.into(),
-            mass_kg: BAR_MASS,
-            vertices: end(place, &seen.positions),
-        };
-        let mut sequence = Sequence {
+        let mut instruments = Instruments::new(self, fabric.loading_ratio, &kind.to_string());
+        let frames = states.iter().zip(&test.steps).enumerate().map(|(index, (state, step))| Frame {
+            time: Some(FRAME_TIME * index as f64),
+            ..observe(&test, step, state, shape(state), &mut instruments)
+        });
+        let frames = frames.collect();
+        let clips = test.grips().iter().map(|grip| Clip {
+            name: grip.name.into(),
+            mass_kg: grip.mass_kg,
+            vertices: test.gripped(&seen, grip),
+        });
+        Ok(Sequence {
             name: kind.to_string(),
             kind,
-            gravity: Vector3::zeros(),
-            noise: self
-                .noise
-                .then_some(Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE) }),
+            gravity: test.gravity,
+            noise: instruments.noise(),
             force_direction: None,
-            table: None,
-            clips: vec![clip("low", 0.0), clip("high", length)],
+            table: match test.support {
+                Support::Table { table, .. } => Some(table),
+                Support::Clips(_) => None,
+            },
+            clips: clips.collect(),
+            frames,
             mesh: seen,
-            frames: Vec::new(),
-        };
-        let specimen = Specimen::new(&sequence, Some(self.nodes), Diagonals::Backward)?;
-        // The rig's own mesh carries the truth; the measured mesh is looked up in it.
-        let truth = Sequence { mesh: specimen.mesh.clone(), clips: Vec::new(), ..sequence.clone() };
-        let lookup = Specimen::new(&truth, Some(self.measured), Diagonals::Alternating)?;
-        let ends = [end(0.0, &specimen.mesh.positions), end(length, &specimen.mesh.positions)];
-        let held: Vec<Held> = ends
-            .iter()
-            .enumerate()
-            .flat_map(|(clip, nodes)| nodes.iter().map(move |&node| Held { node, clip: Some(clip) }))
-            .collect();
-        let components: Vec<Component> =
-            curves.components().filter(|component| !component.is_bending()).collect();
-        let cloth = Cloth::new(&Problem {
-            mesh: &specimen.mesh,
-            model: fabric.model,
-            components: &components,
-            areal_density: fabric.areal_density_kg_m2,
-            gravity: Vector3::zeros(),
-            held: &held,
-            tied: &[],
-            planar: true,
         })
-        .map_err(mechanics)?;
-        let mut solver = Solver::new(&cloth);
-        let settings = equilibrium::Settings::default();
-        for (index, (share, cycle, phase)) in self.schedule().into_iter().enumerate() {
-            let shift = direction * (0.5 * share * largest);
-            let poses = [-shift, shift]
-                .map(|shift| Isometry3::from_parts(Translation3::from(shift), UnitQuaternion::identity()));
-            let mut x: Vec<f64> = specimen
-                .mesh
-                .positions
-                .iter()
-                .flat_map(|p| {
-                    let q = p + shift * (2.0 * p.dot(&direction) / length - 1.0);
-                    [q.x, q.y, q.z]
-                })
-                .collect();
-            let mut cords = Vec::new();
-            if share > 0.0 {
-                let equilibrium = solver.solve(curves, &mut x, &settings);
-                if !equilibrium.converged() {
-                    return Err(Error::Geometry {
-                        sequence: sequence.name,
-                        found: format!("frame {index}: {}", equilibrium.status),
-                        expected: "a fabric that has an equilibrium at every extension".into(),
-                    });
-                }
-                for (clip, force) in solver.clip_forces().into_iter().enumerate() {
-                    cords.push(Cord { clip, force: self.noisy(force, FORCE_NOISE, random), point: None });
-                }
-            }
-            let state: Vec<Vector3<f64>> = x.chunks_exact(3).map(Vector3::from_column_slice).collect();
-            let positions = lookup
-                .samples
-                .iter()
-                .map(|sample| self.noisy(sample.interpolate(&specimen.mesh, &state), POSITION_NOISE, random))
-                .collect();
-            let time = 2.0 * index as f64;
-            sequence.frames.push(Frame {
-                time: Some(time),
-                cycle: Some(cycle),
-                phase: Some(phase),
-                poses: poses.map(|pose| self.noisy_pose(pose, length, random)).to_vec(),
-                cords,
-                positions: Some(positions),
-            });
-        }
-        Ok(sequence)
-    }
-
-    /// Share of the largest extension, cycle and phase of every frame; the first is at rest.
-    fn schedule(&self) -> Vec<(f64, usize, Phase)> {
-        let share = |step: usize| step as f64 / self.frames as f64;
-        let mut schedule = vec![(0.0, 0, Phase::Hold)];
-        for cycle in 0..self.cycles {
-            schedule.extend((1..=self.frames).map(|step| (share(step), cycle, Phase::Loading)));
-            schedule.extend((0..self.frames).rev().map(|step| (share(step), cycle, Phase::Unloading)));
-        }
-        schedule
-    }
-
-    fn noisy(&self, exact: Vector3<f64>, deviation: f64, random: &mut StdRng) -> Vector3<f64> {
-        if !self.noise {
-            return exact;
-        }
-        exact + Vector3::from_fn(|_, _| normal(random, deviation))
-    }
-
-    /// A clip is seen through many vertices, but let us say through one at each of its ends.
-    fn noisy_pose(&self, exact: Isometry3<f64>, length: f64, random: &mut StdRng) -> Isometry3<f64> {
-        if !(self.noise && self.clip_noise) {
-            return exact;
-        }
-        let shift = Vector3::from_fn(|_, _| normal(random, POSITION_NOISE));
-        let turn = Vector3::from_fn(|_, _| normal(random, POSITION_NOISE / length));
-        Isometry3::from_parts(
-            Translation3::from(exact.translation.vector + shift),
-            UnitQuaternion::from_scaled_axis(turn) * exact.rotation,
-        )
     }
 }
 
-fn normal(random: &mut StdRng, deviation: f64) -> f64 {
-    let sample: f64 = StandardNormal.sample(random);
-    deviation * sample
+/// A frame as the instruments see it.
+fn observe(
+    test: &Test,
+    step: &Step,
+    state: &State,
+    shape: Vec<Vector3<f64>>,
+    instruments: &mut Instruments<'_>,
+) -> Frame {
+    let [width, height] = test.sheet.size;
+    let hinged = test.kind == Kind::Shear;
+    let grips = test.grips();
+    let mut cord = |(clip, hold): (usize, &Vector3<f64>)| {
+        let weight = test.gravity * grips[clip].mass_kg;
+        Cord { clip, force: instruments.cord(*hold, weight, step.phase), point: None }
+    };
+    let cords = state.holds.iter().enumerate().map(&mut cord).collect();
+    let positions = shape.into_iter().map(|exact| instruments.position(exact)).collect();
+    // On a table there is no clip, though the sheet is moved.
+    let poses = state.motions[..grips.len()].to_vec();
+    Frame {
+        time: None,
+        cycle: Some(step.cycle),
+        phase: Some(step.phase),
+        poses: instruments.poses(poses, hinged, width.max(height)),
+        cords,
+        positions: Some(positions),
+    }
 }

@@ -2,7 +2,7 @@
 
 mod discrete_shell;
 
-pub use discrete_shell::Hinge;
+pub use discrete_shell::{HINGE_STRAIN_PER_CURVATURE, Hinge};
 
 use crate::error::Result;
 use crate::material::{Component, Model};
@@ -22,10 +22,7 @@ pub enum Bending {
 /// and stress to curvature and moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rolled {
-    /// Hinges: strain = 3 × curvature, moment = stress, flexural rigidity = 3 × stiffness.
-    ///
-    /// The hinges' h₀ is a third of the mean height, which is where the threes come from. True along the lines of a
-    /// regular grid; elsewhere the triangulation changes it (docs/model.md).
+    /// Hinges along the lines of a regular grid: [`HINGE_STRAIN_PER_CURVATURE`]; the moment is the stress.
     Hinges,
     /// Ring-2 springs over two segments of this length, m, which bear this share of the cloth; read at the size of their
     /// strain.
@@ -41,7 +38,7 @@ impl Rolled {
     /// The size of the strain at a curvature, 1/m.
     pub fn strain(self, curvature: f64) -> f64 {
         match self {
-            Self::Hinges => 3.0 * curvature,
+            Self::Hinges => HINGE_STRAIN_PER_CURVATURE * curvature,
             Self::Springs { segment, .. } => 2.0 * (0.25 * curvature * segment).sin().powi(2),
         }
     }
@@ -49,7 +46,7 @@ impl Rolled {
     /// The curvature, 1/m, at a size of the strain.
     pub fn curvature(self, strain: f64) -> f64 {
         match self {
-            Self::Hinges => strain / 3.0,
+            Self::Hinges => strain / HINGE_STRAIN_PER_CURVATURE,
             Self::Springs { segment, .. } => 4.0 / segment * (0.5 * strain).clamp(0.0, 1.0).sqrt().asin(),
         }
     }

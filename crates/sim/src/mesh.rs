@@ -51,6 +51,15 @@ impl Grid {
         [self.width / (self.columns - 1) as f64, self.height / (self.rows - 1) as f64]
     }
 
+    /// True if a cell is split by '/'; false by '\', or by both.
+    pub fn is_forward(&self, column: usize, row: usize) -> bool {
+        match self.diagonals {
+            Diagonals::Forward => true,
+            Diagonals::Backward | Diagonals::Crossed => false,
+            Diagonals::Alternating => (column + row).is_multiple_of(2),
+        }
+    }
+
     /// The grid as a flat mesh in the plane z = 0; material coordinates equal x and y.
     ///
     /// # Errors
@@ -94,18 +103,10 @@ impl Grid {
     fn triangles(&self, [column, row]: [usize; 2]) -> Vec<[usize; 3]> {
         let [low, right] = [self.node(column, row), self.node(column + 1, row)];
         let [up, high] = [self.node(column, row + 1), self.node(column + 1, row + 1)];
-        let forward = match self.diagonals {
-            Diagonals::Forward => true,
-            Diagonals::Backward => false,
-            Diagonals::Alternating => (column + row) % 2 == 0,
-            Diagonals::Crossed => {
-                let centre = self.columns * self.rows + row * (self.columns - 1) + column;
-                return [[low, right], [right, high], [high, up], [up, low]]
-                    .map(|[a, b]| [a, b, centre])
-                    .into();
-            }
-        };
-        if forward {
+        if self.diagonals == Diagonals::Crossed {
+            let centre = self.columns * self.rows + row * (self.columns - 1) + column;
+            [[low, right], [right, high], [high, up], [up, low]].map(|[a, b]| [a, b, centre]).into()
+        } else if self.is_forward(column, row) {
             vec![[low, right, high], [low, high, up]]
         } else {
             vec![[low, right, up], [right, high, up]]

@@ -6,8 +6,9 @@ use crate::options::{Telling, parse_nodes};
 use crate::progress::Progress;
 use clap::Args;
 use cloth_fit::error::Error;
+use cloth_fit::frame::Kind;
 use cloth_fit::io::{read_fabric, write_set};
-use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_fit::rig::{KINDS, KnownFabric, Rig};
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,34 +16,49 @@ use std::path::{Path, PathBuf};
 const EXAMPLE: &str = "\
 Example:
   fit-cloth rig --fabric cotton-denim --out sets/denim
+  fit-cloth rig --fabric wool-cotton --sequences stretch-weft,shear --cord-hysteresis --out sets/wool
   fit-cloth rig --fabric fixtures/fabrics/cotton-denim.toml --frames 40 --seed 7 --out sets/denim
 
 The set can be fitted at once: fit-cloth stretch sets/denim";
 
 /// The fabrics that come with the program.
-const KNOWN: [(&str, &str); 1] =
-    [("cotton-denim", include_str!("../../../../fixtures/fabrics/cotton-denim.toml"))];
+const KNOWN: [(&str, &str); 4] = [
+    ("cotton-denim", include_str!("../../../../fixtures/fabrics/cotton-denim.toml")),
+    ("cotton-satin", include_str!("../../../../fixtures/fabrics/cotton-satin.toml")),
+    ("rayon-spandex-knit", include_str!("../../../../fixtures/fabrics/rayon-spandex-knit.toml")),
+    ("wool-cotton", include_str!("../../../../fixtures/fabrics/wool-cotton.toml")),
+];
 
 /// `fit-cloth rig`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct RigOptions {
-    /// A fabric that comes with the program (cotton-denim), or a file like fixtures/fabrics/cotton-denim.toml
+    /// A fabric that comes with the program (cotton-denim, cotton-satin, rayon-spandex-knit, wool-cotton), or
+    /// a file like fixtures/fabrics/cotton-denim.toml
     #[arg(long)]
     pub fabric: String,
     /// The measurement set to write; a set that the rig wrote there before is replaced
     #[arg(long)]
     pub out: PathBuf,
+    /// The tests to make [default: all]: bend-bias, bend-warp, bend-weft, complex-shear, corner-pull, shear,
+    /// stretch-warp, stretch-weft
+    #[arg(long, value_delimiter = ',', value_parser = parse_kind, hide_default_value = true,
+        default_values_t = KINDS)]
+    pub sequences: Vec<Kind>,
+    /// Which sample of the fabric: 1 is the fabric itself, in any other each curve is stiffer or softer as a
+    /// whole
+    #[arg(long, default_value_t = 1)]
+    pub sample: usize,
     /// Columns and rows of the simulation: finer than a fit's
     #[arg(long, default_value = "61x61", value_parser = parse_nodes)]
     pub nodes: [usize; 2],
     /// Columns and rows of the measured mesh
-    #[arg(long, default_value = "21x21", value_parser = parse_nodes)]
+    #[arg(long, default_value = "100x100", value_parser = parse_nodes)]
     pub measured: [usize; 2],
-    /// Frames of each pull, and of each release
+    /// Frames of each loading, and of each unloading
     #[arg(long, default_value_t = 12)]
     pub frames: usize,
-    /// Pulls
+    /// Loadings and unloadings
     #[arg(long, default_value_t = 1)]
     pub cycles: usize,
     /// Leave out the noise of the instruments (0.075 mm on vertices, 3 mN on force components)
@@ -51,6 +67,12 @@ pub struct RigOptions {
     /// Noise on the clips' poses too
     #[arg(long, conflicts_with = "no_noise")]
     pub clip_noise: bool,
+    /// Friction of the cords: forces 0.05 N larger on loading, smaller on unloading
+    #[arg(long)]
+    pub cord_hysteresis: bool,
+    /// The fabric's own hysteresis: forces on loading are its loading_ratio times those on unloading
+    #[arg(long)]
+    pub fabric_hysteresis: bool,
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -63,13 +85,18 @@ pub struct RigOptions {
 pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let fabric = known_fabric(&options.fabric)?;
     let rig = Rig {
+        sequences: options.sequences.clone(),
+        sample: options.sample,
         nodes: options.nodes,
         measured: options.measured,
         frames: options.frames,
         cycles: options.cycles,
         noise: !options.no_noise,
         clip_noise: options.clip_noise,
+        cord_hysteresis: options.cord_hysteresis,
+        fabric_hysteresis: options.fabric_hysteresis,
         seed: options.seed,
+        ..Rig::default()
     };
     refuse_measured(&options.out)?;
     let progress = Progress::new(&format!("measuring {}", fabric.name), !telling.quiet);
@@ -78,8 +105,8 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
     write_set(&options.out, &set)?;
     let frames: usize = set.sequences.iter().map(|sequence| sequence.frames.len()).sum();
     let names: Vec<&str> = set.sequences.iter().map(|sequence| &sequence.name[..]).collect();
-    let text = format!("{frames} frames of {} in {}", names.join(" and "), options.out.display());
-    let json = json!({ "set": options.out, "fabric": fabric.name, "sequences": names, "frames": frames });
+    let text = format!("{frames} frames of {} in {}", names.join(", "), options.out.display());
+    let json = json!({ "set": options.out, "fabric": set.fabric.name, "sequences": names, "frames": frames });
     tell(telling, output, &text, &json)?;
     Ok(Outcome::Done)
 }
@@ -92,7 +119,7 @@ fn refuse_measured(folder: &Path) -> Result<(), Failure> {
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .filter(|name| !name.starts_with('.'))
         .collect();
-    let known = |name: &String| ["fabric.toml", "stretch-weft", "stretch-warp"].contains(&&name[..]);
+    let known = |name: &String| name == "fabric.toml" || parse_kind(name).is_ok();
     let from_rig = || {
         read_fabric(folder)
             .is_ok_and(|fabric| fabric.source.is_some_and(|source| source.starts_with("virtual rig")))
@@ -102,6 +129,13 @@ fn refuse_measured(folder: &Path) -> Result<(), Failure> {
     }
     let expected = "a new or empty folder, or a set that the rig wrote, which is replaced";
     Err(Error::input(folder, None, "--out", "a folder with other things in it", expected).into())
+}
+
+/// A test by its name.
+fn parse_kind(name: &str) -> Result<Kind, String> {
+    let names = || KINDS.map(|kind| kind.to_string()).join(", ");
+    let found = KINDS.into_iter().find(|kind| kind.to_string() == name);
+    found.ok_or_else(|| format!("{name}: expected one of {}", names()))
 }
 
 fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {

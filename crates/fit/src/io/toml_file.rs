@@ -11,26 +11,31 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The text of a TOML file.
-pub(super) struct TomlFile {
+pub(crate) struct TomlFile {
     path: PathBuf,
     text: String,
 }
 
 impl TomlFile {
     pub(super) fn read(path: &Path) -> Result<Self> {
-        Ok(Self { path: path.to_path_buf(), text: read_text(path)? })
+        Ok(Self::of(path, read_text(path)?))
+    }
+
+    /// A file whose text is known already.
+    pub(crate) fn of(path: &Path, text: String) -> Self {
+        Self { path: path.to_path_buf(), text }
     }
 
     /// The value that the file describes.
     ///
     /// # Errors
     /// No TOML; a key unknown, missing or twice; a value of another type. All with line and key.
-    pub(super) fn value<T: DeserializeOwned>(&self) -> Result<T> {
+    pub(crate) fn value<T: DeserializeOwned>(&self) -> Result<T> {
         toml::from_str(&self.text).map_err(|error| self.explain(&error))
     }
 
     /// Bad input at a key such as `clips[1].mass_kg`.
-    pub(super) fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
+    pub(crate) fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         let mut line = None;
         self.visit(&mut |name, span| {
             if key.starts_with(name) {
@@ -41,7 +46,7 @@ impl TomlFile {
     }
 
     /// True if the file has a key such as `gravity_m_s2[3]`.
-    pub(super) fn has(&self, key: &str) -> bool {
+    pub(crate) fn has(&self, key: &str) -> bool {
         let mut found = false;
         self.visit(&mut |name, _| found |= name == key);
         found
