@@ -136,7 +136,7 @@ const NONMONOTONE_STEPS: usize = 40;
 const SINGULAR: f64 = 1e-14;
 
 /// So many unstable states in a row are left.
-const ESCAPES: usize = 12;
+const ESCAPES: usize = 6;
 
 /// A factor is used again while each step with it leaves less than this share of the imbalance. Warm cantilevers need 3.0
 /// factorisations with 0.5, 3.7 with 0.25; picture frames 5.0 and 6.0.

@@ -12,6 +12,9 @@ use crate::material::Curves;
 /// triangle or hinge to turn over.
 const STEP: f64 = 1e-2;
 
+/// The step is doubled so often at most, while the energy falls: to two and a half edges.
+const DOUBLINGS: u32 = 8;
+
 /// The second side is taken where its energy falls by this share more than that of the first: the two sides of a
 /// symmetric problem are equal but for rounding, which must not decide.
 const TIE: f64 = 1e-6;
@@ -35,7 +38,7 @@ impl Solver<'_> {
         let mut best = None;
         let mut iterations = found.iterations;
         for side in [1.0, -1.0] {
-            let mut moved: Vec<f64> = origin.iter().zip(&direction).map(|(x, d)| x + side * d).collect();
+            let mut moved = self.downhill(curves, &origin, &direction, side);
             self.mixed.clear();
             let state = self.minimise(curves, &mut moved, settings);
             iterations += state.iterations;
@@ -49,6 +52,25 @@ impl Solver<'_> {
         let left = best.is_some();
         *found = Equilibrium { iterations, escaped: found.escaped || left, ..best.unwrap_or(*found) };
         left
+    }
+
+    /// The lowest state along a direction, in steps that double: a mode that is hardly unstable has so little force that a
+    /// single step, or many, would still count as balanced.
+    fn downhill(&self, curves: &Curves, origin: &[f64], direction: &[f64], side: f64) -> Vec<f64> {
+        let moved = |length: f64| -> Vec<f64> {
+            origin.iter().zip(direction).map(|(x, d)| x + side * length * d).collect()
+        };
+        let mut best = moved(1.0);
+        let mut lowest = self.cloth.energy(curves, &best);
+        for doubling in 1..=DOUBLINGS {
+            let trial = moved(f64::from(1 << doubling));
+            let energy = self.cloth.energy(curves, &trial);
+            if !(energy < lowest) || self.cloth.hinge_jumps(origin, &trial) {
+                break;
+            }
+            (best, lowest) = (trial, energy);
+        }
+        best
     }
 
     /// The direction of most negative curvature, as long as the step to take along it; `None` if no curvature is
