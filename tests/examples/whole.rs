@@ -26,7 +26,7 @@ fn main() {
         noise,
         cord_hysteresis: noise,
         frames: 12,
-        sequences: vec![StretchWeft, StretchWarp, Shear, BendWeft, BendWarp, BendBias],
+        sequences: vec![StretchWeft, StretchWarp, Shear, BendWeft, BendWarp, BendBias, ComplexShear, CornerPull],
         ..Rig::default()
     };
     let set = rig.measure(&fabric).unwrap();
@@ -79,4 +79,9 @@ fn main() {
         }
         let _ = Component::ALL;
     }
+    let clock = std::time::Instant::now();
+    let v = cloth_fit::validation::validate(&set, &[ComplexShear, CornerPull], report.curves(), &Settings { model, ..Settings::default() }).unwrap();
+    println!("validation {:.1} s {:?} dropped {:?}", clock.elapsed().as_secs_f64(), v.prediction.counters, v.prediction.dropped);
+    for s in &v.sequences { println!("{} share {:?} multi {:?} pos {:?} force {:?}", s.report.name, s.measure_share(), s.report.multi_stable, s.report.position_rms, s.report.force_rms);
+       for r in &s.measure.as_ref().unwrap().1 { println!("    {} {:.4} {:.5} {:.5} {}", r.frame, r.extension, r.measured, r.simulated, r.multi_stable); } }
 }

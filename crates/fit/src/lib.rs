@@ -80,3 +80,4 @@ pub mod store;
 pub mod strip;
 mod summary;
 pub mod uncertainty;
+pub mod validation;

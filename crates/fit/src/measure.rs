@@ -113,7 +113,7 @@ fn affine_map(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Option<Matrix3
 /// Torque of the clips' forces about the cloth's centre along the rest normal, every other clip negative, N·m.
 ///
 /// ```text
-/// T = Σ s_c (p − centre) × F · n        s = +1, −1, +1, … around the sheet, +1 for clip 0
+/// T = Σ s_c (p − centre) × F · n        s = +1, −1, +1, … around the sheet, +1 for clip 0; two clips: +1
 /// ```
 ///
 /// Without the signs the sum is the torque on the whole sheet, which balance makes zero. Neighbouring bars of a sheared
@@ -136,8 +136,12 @@ pub fn aggregated_torque(
     pulls.iter().map(|pull| signs[pull.clip] * (pull.point - centre).cross(&pull.force).dot(normal)).sum()
 }
 
-/// +1 and −1 in turn around the sheet, +1 for clip 0.
+/// +1 and −1 in turn around the sheet, +1 for clip 0; for two clips +1: opposite bars pulled opposite ways turn the sheet
+/// alike, and a sign would cancel what is to be measured.
 fn alternating(centres: &[Vector3<f64>], centre: &Vector3<f64>, normal: &Vector3<f64>) -> Vec<f64> {
+    if centres.len() < 3 {
+        return vec![1.0; centres.len()];
+    }
     let from_first = |clip: usize| {
         let [first, arm] = [centres[0] - centre, centres[clip] - centre];
         first.cross(&arm).dot(normal).atan2(first.dot(&arm)).rem_euclid(TAU)

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
 use crate::replica::{Parts, Replica};
 use crate::report::SequenceReport;
-use crate::simulation::{DroppedFrame, Objective, Simulation, Task};
+use crate::simulation::{Counters, DroppedFrame, Meter, Objective, Simulation, Task};
 use crate::stage::Settings;
 use crate::summary::sequence_reports;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
@@ -19,9 +19,13 @@ pub struct Prediction {
     pub sequences: Vec<SequenceReport>,
     /// Frames without an equilibrium, which take no part.
     pub dropped: Vec<DroppedFrame>,
+    /// What the solves have cost.
+    pub counters: Counters,
 }
 
 /// Simulates all sequences of some kinds with known curves: how well they are predicted.
+///
+/// Sheets between clips that leave their plane are followed from rest through all frames, as a simulator would meet them.
 ///
 /// # Errors
 /// Bad settings; sequences that no replica can be made of.
@@ -47,11 +51,14 @@ pub fn predict(
         robust: None,
     };
     let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
-    let mut simulation = Simulation::new(&replicas, task, none, Arc::default());
+    let meter = Arc::<Meter>::default();
+    let mut simulation = Simulation::new(&replicas, task, none, Arc::clone(&meter));
+    simulation.follow();
     let forces = simulation.settle();
     Ok(Prediction {
         sequences: sequence_reports(&simulation, &forces),
         dropped: simulation.dropped().to_vec(),
+        counters: meter.read(),
     })
 }
 

@@ -100,6 +100,8 @@ pub struct ForceRow {
     pub clip: usize,
     /// Unit direction of the component, in the specimen's own frame.
     pub direction: Vector3<f64>,
+    /// The same in the world's axes.
+    pub world: Vector3<f64>,
     /// How far the test went: see [`ReplicaFrame`](crate::replica::ReplicaFrame::extension).
     pub extension: f64,
     /// Measured, N.

@@ -94,6 +94,9 @@ pub enum Objective {
     Positions,
 }
 
+/// Two equilibria of a frame are one if no node is farther apart than this share of a cell.
+const SAME_SHAPE: f64 = 0.01;
+
 /// The equilibrium of one frame at some control values.
 #[derive(Debug, Clone, Default)]
 struct State {
@@ -334,6 +337,43 @@ impl<'a> Simulation<'a> {
             }
         }
         forces
+    }
+
+    /// Follows every sheet between clips that moves in space from its rest through its frames, each from the equilibrium
+    /// before. A frame that so comes to another shape than from its measured one has several equilibria, and is flagged.
+    pub fn follow(&mut self) {
+        let curves = self.curves(&self.curve);
+        let followed: Vec<Vec<(usize, State)>> =
+            (0..self.replicas.len()).into_par_iter().map(|replica| self.followed(replica, &curves)).collect();
+        for (place, state) in followed.into_iter().flatten() {
+            self.states[place] = state;
+        }
+    }
+
+    /// The states of one replica's frames by continuation, with their places among all frames.
+    fn followed(&self, index: usize, curves: &Curves) -> Vec<(usize, State)> {
+        let replica = &self.replicas[index];
+        if replica.planar || replica.is_on_table() {
+            return Vec::new();
+        }
+        let mut solver = Solver::new(&replica.cloths[0]);
+        let mut x = replica.rest();
+        let mut states = Vec::new();
+        for (place, &(_, frame)) in self.frames.iter().enumerate().filter(|(_, (of, _))| *of == index) {
+            let found = solver.drive(curves, &mut x, &replica.frames[frame].start, &self.task.settings);
+            self.meter.add(&found);
+            let state = &self.states[place];
+            if !found.converged() {
+                // From where the measured shape led.
+                x.copy_from_slice(&state.x);
+                continue;
+            }
+            let apart = x.iter().zip(&state.x).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            let [dx, dy] = replica.specimen.grid.cell();
+            let escaped = state.escaped || apart > SAME_SHAPE * dx.min(dy);
+            states.push((place, State { x: x.clone(), escaped, ..State::default() }));
+        }
+        states
     }
 
     /// The derivative of everything that is compared with respect to the control values of other curves, in the order of

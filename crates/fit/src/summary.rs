@@ -133,6 +133,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 phase: frame.phase,
                 clip: component.clip,
                 direction: component.direction,
+                world: replica.specimen.frame.rotation.inverse() * component.direction,
                 extension: frame.extension,
                 measured: component.measured,
                 simulated,
