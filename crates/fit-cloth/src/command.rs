@@ -1,11 +1,13 @@
 //! The commands, one file each.
 
+pub mod compare;
+pub mod fit;
 pub mod import;
 pub mod rig;
-pub mod stretch;
 
 use crate::failure::Failure;
 use crate::options::{Command, Options, Telling};
+use fit::Goal;
 use serde_json::Value;
 use std::io::Write;
 
@@ -26,7 +28,19 @@ pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failur
     match &options.command {
         Command::Import(import) => import::run(import, options.telling, output),
         Command::Rig(rig) => rig::run(rig, options.telling, output),
-        Command::Stretch(stretch) => stretch::run(stretch, options.telling, output),
+        Command::Stretch(flags) => fit::run(Goal::Stretch, flags, options.telling, output),
+        Command::Shear(flags) => fit::run(Goal::Shear, flags, options.telling, output),
+        Command::Bend(flags) => fit::run(Goal::Bend, flags, options.telling, output),
+        Command::Fit(flags) => fit::run(Goal::All, flags, options.telling, output),
+        Command::Compare(compare) => compare::run(compare, options.telling, output),
+    }
+}
+
+/// Says on standard error what the user should know, though the command goes on.
+fn warn(telling: Telling, warning: &str) {
+    if !telling.quiet {
+        // Nobody may be there to read it.
+        let _ = writeln!(std::io::stderr(), "warning: {warning}");
     }
 }
 

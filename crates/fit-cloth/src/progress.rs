@@ -31,18 +31,20 @@ impl Progress {
 
     /// What a fit tells its progress to.
     pub fn watch(&self) -> Watch<'_> {
-        let (mut points, mut tried) = (0, 0);
+        let mut level = String::new();
+        let mut tried = 0;
         Watch {
             meter: Arc::clone(&self.meter),
             observe: Box::new(move |event| {
                 let message = match event {
-                    Event::Level { points: now, .. } => {
-                        (points, tried) = (now, 0);
-                        format!(": {points} control points")
+                    Event::Level { component, points } => {
+                        tried = 0;
+                        level = format!(", {component}: {points} control points");
+                        level.clone()
                     }
                     Event::Iteration { rms, .. } => {
                         tried += 1;
-                        format!(": {points} control points, iteration {tried}, residual {rms:.3e} N")
+                        format!("{level}, iteration {tried}, residual {rms:.3e}")
                     }
                 };
                 self.bar.set_message(message);

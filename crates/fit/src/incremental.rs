@@ -9,7 +9,7 @@
 //! Source: Miguel et al. 2012, §5.2.
 
 use crate::error::Result;
-use crate::frame::MeasurementSet;
+use crate::frame::{Kind, MeasurementSet};
 use crate::knowledge::Knowledge;
 use crate::report::{SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
@@ -29,6 +29,24 @@ pub enum Stage {
 impl Stage {
     /// All stages, in order.
     pub const ALL: [Self; 3] = [Self::Stretch, Self::Shear, Self::Bend];
+
+    /// The components it fits.
+    pub fn components(self) -> &'static [Component] {
+        match self {
+            Self::Stretch => &[Component::StretchWeft, Component::StretchWarp],
+            Self::Shear => &[Component::Shear],
+            Self::Bend => &[Component::BendWeft, Component::BendWarp, Component::BendDiagonal],
+        }
+    }
+
+    /// The tests that show it.
+    pub fn kinds(self) -> &'static [Kind] {
+        match self {
+            Self::Stretch => &[Kind::StretchWeft, Kind::StretchWarp],
+            Self::Shear => &[Kind::Shear, Kind::StretchBias],
+            Self::Bend => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
+        }
+    }
 }
 
 /// What a fit of several stages found.
@@ -84,7 +102,7 @@ impl FitReport {
     }
 }
 
-/// Fits the wanted stages of a set in order, from what is known.
+/// Fits the wanted stages of a set in order, from what is known; curves that are known are not fitted.
 ///
 /// # Errors
 /// As [`stage::fit`].
@@ -102,6 +120,9 @@ pub fn fit(
         knowledge: known.clone(),
     };
     for plan in plans(wanted, settings.variant) {
+        if plan.fitted.iter().all(|&component| known.knows(component)) {
+            continue;
+        }
         // What the first pass could not see, a second does not either.
         if plan.pass > 1 && !report.knowledge.knows(plan.fitted[0]) {
             continue;

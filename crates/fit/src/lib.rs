@@ -25,8 +25,9 @@
 //! | [`least_squares`], [`gauss_newton`] | one linearised step under constraints; the outer loop |
 //! | [`refine`] | a curve grows control points |
 //! | [`uncertainty`] | noise, misfit, bands |
-//! | [`stage`] | stretch, from set to report |
-//! | [`measure`] | a frame summed up: shear angle, torque, force difference, profile |
+//! | [`stage`], [`incremental`] | one curve, from set to report; all of them in order |
+//! | [`prediction`], [`compare`] | tests that a fit did not see; models and variants side by side |
+//! | [`measure`], [`validation`] | a frame summed up; motions and samples that no fit saw |
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //!
 //! # Example
@@ -56,6 +57,7 @@
 //! ```
 
 mod boundary;
+pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gap;

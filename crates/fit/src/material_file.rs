@@ -2,12 +2,18 @@
 //!
 //! Versioned by its `schema`. Control points, not samples, so that nothing is lost on the way to a simulator of ours.
 
+mod control_point;
+mod entry;
+
+pub use control_point::{ControlPoint, Unit};
+pub use entry::{Correlation, CurveEntry, ResidualEntry};
+
 use crate::error::{Error, Result};
-use crate::frame::{Fabric, Kind, MeasurementSet};
-use crate::report::{CurveReport, SequenceReport, StageReport};
-use crate::stage::{Constraints, Settings};
-use cloth_sim::curve::StiffnessCurve;
+use crate::frame::{Fabric, MeasurementSet};
+use crate::incremental::FitReport;
+use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::material::{Component, Compression, Curves, Model};
+use cloth_sim::mesh::Diagonals;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,6 +29,9 @@ pub struct MaterialFile {
     pub schema: String,
     /// The cloth model whose strains the curves are over.
     pub model: Model,
+    /// Which of its freedoms were used.
+    #[serde(default)]
+    pub variant: Variant,
     /// What weft and warp do under compression.
     pub compression: Compression,
     /// The sample that was measured.
@@ -35,104 +44,57 @@ pub struct MaterialFile {
     pub provenance: Provenance,
 }
 
-/// A component's curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CurveEntry {
-    /// False if no frame sees the component; then nothing else stands here.
-    pub observed: bool,
-    /// The control points of k(ε), a Hermite spline: docs/model.md.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub control_points: Vec<ControlPoint>,
-    /// The strains that the measurement visited.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub visited_strain: Option<[f64; 2]>,
-    /// Directions of the control values that the data see.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rank: Option<usize>,
-    /// Constraints that hold the solution.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub active_constraints: Option<usize>,
-    /// Noise of one force component, N: given, or estimated.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub noise_n: Option<f64>,
-    /// What the model cannot follow beyond that noise, N; 0 if nothing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub misfit_n: Option<f64>,
-    /// The fit came to its minimum.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub converged: Option<bool>,
-}
-
-/// A control point.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ControlPoint {
-    /// Strain.
-    pub strain: f64,
-    /// Stiffness, N/m.
-    pub stiffness_n_per_m: f64,
-    /// Standard deviation of the stiffness, N/m; absent where no frame sees it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub deviation_n_per_m: Option<f64>,
-}
-
-/// How a sequence was met.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ResidualEntry {
-    /// Name of the sequence.
-    pub sequence: String,
-    /// Which test.
-    pub kind: Kind,
-    /// Frames used.
-    pub frames: usize,
-    /// Root mean square over all measured force components, N.
-    pub rms_force_n: f64,
-    /// Largest measured force component, N.
-    pub largest_force_n: f64,
-    /// Root mean square over all observed nodes, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rms_position_m: Option<f64>,
-    /// Measured stiffness on loading over the curve's.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub loading_stiffness: Option<f64>,
-    /// Measured stiffness on unloading over the curve's.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unloading_stiffness: Option<f64>,
-}
-
 /// How the file came about.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Program and version.
     pub program: String,
     /// What kept the curves physical.
     pub constraints: Constraints,
+    /// Residuals above so many times the noise counted less; absent where all counted in full.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robust: Option<f64>,
+    /// How the simulation's cells were split: a bending curve of hinges belongs to its triangulation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diagonals: Option<Diagonals>,
     /// Columns and rows of the simulation, a sequence each.
     pub nodes: BTreeMap<String, [usize; 2]>,
 }
 
 impl MaterialFile {
-    /// Collects what the stages of one model found.
-    pub fn new(set: &MeasurementSet, settings: &Settings, stages: &[StageReport]) -> Self {
-        let entry = |component| match stages.iter().find(|stage| stage.components.contains(&component)) {
-            Some(stage) => CurveEntry::new(stage),
-            None => CurveEntry::unobserved(),
+    /// Collects what the fit of one model found.
+    ///
+    /// * `given` — the file whose curves the fit took as known, if there was one
+    pub fn new(
+        set: &MeasurementSet,
+        settings: &Settings,
+        report: &FitReport,
+        given: Option<&MaterialFile>,
+    ) -> Self {
+        let entry = |component| match report.stage(component) {
+            None if report.knowledge.knows(component) => given
+                .and_then(|file| file.curves.get(&component))
+                .map(|entry| CurveEntry { given: true, ..entry.clone() })
+                .unwrap_or_default(),
+            stage => CurveEntry::new(stage),
         };
-        let sequences = || stages.iter().flat_map(|stage| &stage.sequences);
+        let sequences = report.sequences();
+        let nodes = sequences.iter().map(|(_, sequence)| (sequence.name.clone(), sequence.nodes));
         Self {
             schema: SCHEMA.into(),
             model: settings.model,
+            variant: settings.variant,
             compression: settings.compression,
             fabric: set.fabric.clone(),
             curves: Component::ALL.into_iter().map(|component| (component, entry(component))).collect(),
-            residuals: sequences().map(ResidualEntry::new).collect(),
+            residuals: sequences.iter().map(|(_, sequence)| ResidualEntry::new(sequence)).collect(),
             provenance: Provenance {
                 program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")).into(),
                 constraints: settings.constraints,
-                nodes: sequences().map(|sequence| (sequence.name.clone(), sequence.nodes)).collect(),
+                robust: settings.robust,
+                diagonals: Some(settings.diagonals),
+                nodes: nodes.collect(),
             },
         }
     }
@@ -157,7 +119,10 @@ impl MaterialFile {
         if value["schema"] != SCHEMA {
             return Err(Error::input(path, None, "schema", value["schema"].to_string(), SCHEMA));
         }
-        serde_json::from_str(&text).map_err(refuse)
+        let file: Self = serde_json::from_str(&text).map_err(refuse)?;
+        file.named_curves()
+            .map_err(|(component, found)| Error::input(path, None, component.to_string(), found, CURVE))?;
+        Ok(file)
     }
 
     /// The file's text.
@@ -166,73 +131,69 @@ impl MaterialFile {
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 
-    /// The curves that were observed.
+    /// The curves that were observed or given.
     ///
     /// # Errors
     /// Control points that make no curve.
     pub fn curves(&self) -> Result<Curves> {
-        self.curves
-            .iter()
-            .filter(|(_, entry)| entry.observed)
+        self.named_curves().map_err(|(component, found)| {
+            Error::input(Path::new("material.json"), None, component.to_string(), found, CURVE)
+        })
+    }
+
+    fn named_curves(&self) -> std::result::Result<Curves, (Component, String)> {
+        let observed = self.curves.iter().filter(|(_, entry)| entry.observed);
+        observed
             .map(|(&component, entry)| {
-                let points = &entry.control_points;
-                StiffnessCurve::new(
-                    points.iter().map(|point| point.strain).collect(),
-                    points.iter().map(|point| point.stiffness_n_per_m).collect(),
-                    self.model.negative_strain(component, self.compression),
-                )
-                .map(|curve| (component, curve))
-                .map_err(|source| Error::Mechanics { context: component.to_string(), source })
+                let negative = self.model.negative_strain(component, self.compression);
+                let curve = entry.curve(self.model, component, negative);
+                curve.map(|curve| (component, curve)).map_err(|found| (component, found))
             })
             .collect()
     }
 }
 
-impl CurveEntry {
-    fn unobserved() -> Self {
-        Self {
-            observed: false,
-            control_points: Vec::new(),
-            visited_strain: None,
-            rank: None,
-            active_constraints: None,
-            noise_n: None,
-            misfit_n: None,
-            converged: None,
+/// What an observed curve must have.
+const CURVE: &str = "control points at ascending strains from 0, with finite stiffnesses in the model's unit";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(text: &str) -> serde_json::Result<CurveEntry> {
+        serde_json::from_str(&format!(r#"{{ "observed": true, "control_points": [{text}] }}"#))
+    }
+
+    #[test]
+    fn a_stiffness_is_read_by_its_unit_and_written_alike() {
+        for (component, unit, text) in [
+            (Component::Shear, Unit::NewtonPerMetre, r#"{"strain":0.0,"stiffness_n_per_m":0.1}"#),
+            (
+                Component::BendWarp,
+                Unit::NewtonMetre,
+                r#"{"strain":0.0,"stiffness_n_m":1e-6,"deviation_n_m":1e-8}"#,
+            ),
+        ] {
+            let entry = entry(text).unwrap();
+            assert_eq!(entry.control_points[0].unit, unit);
+            assert_eq!(serde_json::to_string(&entry.control_points[0]).unwrap(), text);
+            assert!(entry.curve(Model::Stvk, component, cloth_sim::curve::NegativeStrain::Odd).is_ok());
         }
     }
 
-    fn new(stage: &StageReport) -> Self {
-        let CurveReport { curve, deviations, visited, rank, active_constraints, .. } = &stage.curve;
-        let point = |(i, &deviation): (usize, &Option<f64>)| ControlPoint {
-            strain: curve.strains()[i],
-            stiffness_n_per_m: curve.stiffnesses()[i],
-            deviation_n_per_m: deviation,
-        };
-        Self {
-            observed: true,
-            control_points: deviations.iter().enumerate().map(point).collect(),
-            visited_strain: Some(*visited),
-            rank: Some(*rank),
-            active_constraints: Some(*active_constraints),
-            noise_n: Some(stage.scatter.noise),
-            misfit_n: Some(stage.scatter.misfit),
-            converged: Some(stage.converged),
+    #[test]
+    fn a_stiffness_in_no_unit_or_in_two_or_in_the_wrong_one_is_refused() {
+        for text in [
+            r#"{"strain":0.0}"#,
+            r#"{"strain":0.0,"stiffness_n_m":1.0,"stiffness_n_per_m":1.0}"#,
+            r#"{"strain":0.0,"stiffness_n_m":1.0,"deviation_n_per_m":1.0}"#,
+            r#"{"strain":0.0,"stiffness_n":1.0}"#,
+        ] {
+            assert!(entry(text).is_err(), "{text}");
         }
-    }
-}
-
-impl ResidualEntry {
-    fn new(sequence: &SequenceReport) -> Self {
-        Self {
-            sequence: sequence.name.clone(),
-            kind: sequence.kind,
-            frames: sequence.frames,
-            rms_force_n: sequence.force_rms.unwrap_or(0.0),
-            largest_force_n: sequence.force_largest,
-            rms_position_m: sequence.position_rms,
-            loading_stiffness: sequence.hysteresis.map(|h| h.loading),
-            unloading_stiffness: sequence.hysteresis.map(|h| h.unloading),
-        }
+        let hinges = entry(r#"{"strain":0.0,"stiffness_n_m":1.0}"#).unwrap();
+        let odd = cloth_sim::curve::NegativeStrain::Odd;
+        assert!(hinges.curve(Model::Stvk, Component::Shear, odd).is_err());
+        assert!(hinges.curve(Model::Springs, Component::BendWeft, odd).is_err());
     }
 }

@@ -8,12 +8,15 @@ use crate::uncertainty::Scatter;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Model};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// A fitted curve with its uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveReport {
     /// The curve, over the model's own strain.
     pub curve: StiffnessCurve,
+    /// Its control points as rows of the curve file. Bending: over curvature.
+    pub points: Vec<Sample>,
     /// False if the measurements do not tell even its scale: then it is no result, and has no file.
     pub observed: bool,
     /// Standard deviation of each control value; `None` where no frame sees it.
@@ -36,7 +39,7 @@ pub struct CurveReport {
     pub active_constraints: usize,
 }
 
-/// One row of a curve file.
+/// One row of a curve file, or a control point in the same terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Strain; bending: curvature, 1/m.
@@ -124,13 +127,17 @@ pub struct Level {
 }
 
 /// What a stage took as known.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Basis {
     /// Components fitted before, whose errors the bands carry on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub carried: Vec<Component>,
     /// All components whose curves were known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub known: Vec<Component>,
     /// Components that nobody measured: a constant stiffness was assumed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Component>,
 }
 
@@ -175,5 +182,11 @@ impl StageReport {
     pub fn name(&self) -> String {
         let names: Vec<String> = self.components.iter().map(|component| component.to_string()).collect();
         names.join(" = ")
+    }
+
+    /// Frames of one of its sequences that take no part: at rest, without a force, or without an equilibrium.
+    pub fn left_out(&self, sequence: &SequenceReport) -> usize {
+        let dropped = self.dropped.iter().filter(|dropped| dropped.sequence == sequence.name).count();
+        sequence.at_rest + dropped
     }
 }

@@ -1,20 +1,19 @@
 //! The folder that a fit writes: curve files, residuals, forces and `material.json`.
 
+mod tables;
+
 use crate::error::{Error, Result};
-use crate::frame::MeasurementSet;
+use crate::incremental::FitReport;
 use crate::material_file::MaterialFile;
-use crate::report::{CurveReport, StageReport};
-use crate::stage::Settings;
 use crate::store::write_file;
 use cloth_sim::material::Model;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Refuses an output folder that holds something other than a former result.
 ///
 /// # Errors
-/// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several. Hidden files
-/// do not count.
+/// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several, or what a
+/// comparison writes. Hidden files do not count.
 pub fn check_output(folder: &Path) -> Result<()> {
     let refuse = |found: &str| {
         Err(Error::input(
@@ -47,7 +46,8 @@ pub fn check_output(folder: &Path) -> Result<()> {
         Model::ALL.iter().any(|model| model.to_string() == name(folder)) && is_result(folder)
     };
     let entries = visible(folder);
-    if entries.is_empty() || is_result(folder) || entries.iter().all(is_model) {
+    let is_comparison = entries.iter().all(|path| COMPARED.contains(&&name(path)[..]));
+    if is_comparison || is_result(folder) || entries.iter().all(is_model) {
         return Ok(());
     }
     refuse("a folder with other things in it")
@@ -56,87 +56,23 @@ pub fn check_output(folder: &Path) -> Result<()> {
 /// What stands in a result folder.
 const WRITTEN: [&str; 5] = ["material.json", "curves", "plots", "residuals.csv", "forces.csv"];
 
-/// Writes the result of one model into a folder that exists.
+/// What stands in the folder of a [comparison](crate::compare).
+pub(crate) const COMPARED: [&str; 2] = ["compare.csv", "compare.json"];
+
+/// Writes the result of one model into a folder that exists. A curve that no frame sees has no file.
 ///
 /// # Errors
 /// What the operating system refuses.
-pub fn write_result(
-    folder: &Path,
-    set: &MeasurementSet,
-    settings: &Settings,
-    stages: &[StageReport],
-) -> Result<()> {
+pub fn write_result(folder: &Path, report: &FitReport, material: &MaterialFile) -> Result<()> {
     let curves = folder.join("curves");
     std::fs::create_dir_all(&curves).map_err(|source| Error::io(&curves, source))?;
-    for stage in stages {
-        let file = curves.join(format!("{}.csv", stage.components[0]));
-        write_file(&file, curve_table(&stage.curve).as_bytes())?;
-    }
-    write_file(&folder.join("residuals.csv"), residual_table(stages).as_bytes())?;
-    write_file(&folder.join("forces.csv"), force_table(stages).as_bytes())?;
-    write_file(&folder.join("material.json"), MaterialFile::new(set, settings, stages).to_json().as_bytes())
-}
-
-/// 201 rows; the band's columns are absent where the data do not see all of the curve.
-fn curve_table(curve: &CurveReport) -> String {
-    let banded = curve.samples.iter().all(|sample| sample.band.is_some());
-    let mut table = String::from("strain,stiffness_n_per_m,stress_n_per_m");
-    table.push_str(if banded { ",stress_low_n_per_m,stress_high_n_per_m\n" } else { "\n" });
-    for sample in &curve.samples {
-        let _ = write!(table, "{},{},{}", sample.strain, sample.stiffness, sample.stress);
-        if let Some([low, high]) = sample.band.filter(|_| banded) {
-            let _ = write!(table, ",{low},{high}");
-        }
-        table.push('\n');
-    }
-    table
-}
-
-/// One row a sequence; a position that was not measured is empty.
-fn residual_table(stages: &[StageReport]) -> String {
-    let mut table = String::from(
-        "sequence,kind,rms_force_n,largest_force_n,rms_position_m,frames,frames_left_out,iterations,seconds\n",
-    );
-    for stage in stages {
-        let iterations: usize = stage.levels.iter().map(|level| level.iterations.len()).sum();
-        for s in &stage.sequences {
-            let position = s.position_rms.map(|rms| rms.to_string()).unwrap_or_default();
-            let dropped = stage.dropped.iter().filter(|dropped| dropped.sequence == s.name).count();
-            let _ = writeln!(
-                table,
-                "{},{},{},{},{position},{},{},{iterations},{:.3}",
-                s.name,
-                s.kind,
-                s.force_rms.unwrap_or(0.0),
-                s.force_largest,
-                s.frames,
-                s.at_rest + dropped,
-                stage.seconds
-            );
+    for stage in report.last_stages().filter(|stage| stage.curve.observed) {
+        let table = tables::curve_table(stage);
+        for component in &stage.components {
+            write_file(&curves.join(format!("{component}.csv")), table.as_bytes())?;
         }
     }
-    table
-}
-
-/// Every measured force component (its direction x, y, z in the specimen's frame) beside its simulation, for plots.
-fn force_table(stages: &[StageReport]) -> String {
-    let mut table = String::from("sequence,frame,clip,x,y,z,extension,measured_n,simulated_n\n");
-    for s in stages.iter().flat_map(|stage| &stage.sequences) {
-        for row in &s.forces {
-            let _ = writeln!(
-                table,
-                "{},{},{},{},{},{},{},{},{}",
-                s.name,
-                row.frame,
-                row.clip,
-                row.direction.x,
-                row.direction.y,
-                row.direction.z,
-                row.extension,
-                row.measured,
-                row.simulated
-            );
-        }
-    }
-    table
+    write_file(&folder.join("residuals.csv"), tables::residual_table(report).as_bytes())?;
+    write_file(&folder.join("forces.csv"), tables::force_table(report).as_bytes())?;
+    write_file(&folder.join("material.json"), material.to_json().as_bytes())
 }

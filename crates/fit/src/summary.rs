@@ -22,9 +22,11 @@ pub(crate) fn curve_report(
     let visited = [low.min(0.0), high.max(0.0)];
     let slack = &domain.rows * &outcome.point - &domain.bounds;
     let last = curve.strains()[curve.len() - 1];
+    let rows = Rows { curve: &curve, covariance, rolled: rolled(simulation) };
     CurveReport {
         observed,
-        samples: samples(&curve, visited, covariance, rolled(simulation)),
+        points: curve.strains().iter().map(|&strain| rows.at(rows.place(strain))).collect(),
+        samples: rows.over(visited),
         deviations: covariance.standard_deviations(),
         half_bands: covariance.half_bands(),
         rank: covariance.rank,
@@ -46,38 +48,48 @@ fn rolled(simulation: &Simulation<'_>) -> Option<Rolled> {
 /// Rows of a curve file.
 const SAMPLES: usize = 201;
 
-fn samples(
-    curve: &StiffnessCurve,
-    [low, high]: [f64; 2],
-    covariance: &Covariance,
+/// A curve in the terms of its file: over strain, or over curvature.
+struct Rows<'a> {
+    curve: &'a StiffnessCurve,
+    covariance: &'a Covariance,
     rolled: Option<Rolled>,
-) -> Vec<Sample> {
-    let mut weights = vec![0.0; curve.len()];
-    let ends = [low, high].map(|strain| rolled.map_or(strain, |rolled| rolled.curvature(strain)));
-    (0..SAMPLES)
-        .map(|i| {
-            let place = ends[0] + (ends[1] - ends[0]) * i as f64 / (SAMPLES - 1) as f64;
-            let strain = rolled.map_or(place, |rolled| rolled.strain(place));
-            let lever = rolled.map_or(1.0, |rolled| rolled.lever(place));
-            let stress = lever * curve.stress(strain);
-            curve.weights(strain, &mut weights);
-            let half = covariance.half_band(&DVector::from_column_slice(&weights));
-            // Stress has the sign of strain: what lies beyond zero is not possible.
-            let band = half.map(|half| {
-                let [low, high] = [stress - lever * half, stress + lever * half];
-                if strain >= 0.0 { [low.max(0.0), high] } else { [low, high.min(0.0)] }
-            });
-            let stiffness = match rolled {
-                None | Some(Rolled::Hinges) if place == 0.0 => {
-                    curve.stiffness(0.0) * rolled.map_or(1.0, |rolled| rolled.strain(1.0))
-                }
-                // Ring-2 springs do not resist the first bend.
-                Some(Rolled::Springs { .. }) if place == 0.0 => 0.0,
-                _ => stress / place,
-            };
-            Sample { strain: place, stiffness, stress, band }
-        })
-        .collect()
+}
+
+impl Rows<'_> {
+    /// Evenly spaced rows over a range of strains.
+    fn over(&self, visited: [f64; 2]) -> Vec<Sample> {
+        let [low, high] = visited.map(|strain| self.place(strain));
+        (0..SAMPLES).map(|i| self.at(low + (high - low) * i as f64 / (SAMPLES - 1) as f64)).collect()
+    }
+
+    /// The strain, or the curvature of it.
+    fn place(&self, strain: f64) -> f64 {
+        self.rolled.map_or(strain, |rolled| rolled.curvature(strain))
+    }
+
+    fn at(&self, place: f64) -> Sample {
+        let (curve, rolled) = (self.curve, self.rolled);
+        let strain = rolled.map_or(place, |rolled| rolled.strain(place));
+        let lever = rolled.map_or(1.0, |rolled| rolled.lever(place));
+        let stress = lever * curve.stress(strain);
+        let mut weights = vec![0.0; curve.len()];
+        curve.weights(strain, &mut weights);
+        let half = self.covariance.half_band(&DVector::from_vec(weights));
+        // Stress has the sign of strain: what lies beyond zero is not possible.
+        let band = half.map(|half| {
+            let [low, high] = [stress - lever * half, stress + lever * half];
+            if strain >= 0.0 { [low.max(0.0), high] } else { [low, high.min(0.0)] }
+        });
+        let stiffness = match rolled {
+            None | Some(Rolled::Hinges) if place == 0.0 => {
+                curve.stiffness(0.0) * rolled.map_or(1.0, |rolled| rolled.strain(1.0))
+            }
+            // Ring-2 springs do not resist the first bend.
+            Some(Rolled::Springs { .. }) if place == 0.0 => 0.0,
+            _ => stress / place,
+        };
+        Sample { strain: place, stiffness, stress, band }
+    }
 }
 
 /// How every sequence was met.

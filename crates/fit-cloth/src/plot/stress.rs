@@ -1,59 +1,30 @@
-//! Stress against strain, with its 95 % band and the control points.
+//! Stress against strain, or moment against curvature, with its 95 % band and the control points.
 
-use super::{Drawing, MODEL, SIZE};
-use cloth_fit::report::StageReport;
-use plotters::prelude::*;
+use super::MODEL;
+use super::chart::{Axes, Drawn, figure};
+use cloth_fit::report::{Sample, StageReport};
+use plotters::style::Color;
 
-pub(super) fn draw(stage: &StageReport) -> Drawing {
+pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
     let samples = &stage.curve.samples;
-    let [low, high] = stage.curve.visited;
-    let highest = |sample: &cloth_fit::report::Sample| sample.band.map_or(sample.stress, |[_, high]| high);
+    let highest = |sample: &Sample| sample.band.map_or(sample.stress, |[_, high]| high);
+    let lowest = |sample: &Sample| sample.band.map_or(sample.stress, |[low, _]| low);
     let top = samples.iter().map(highest).fold(0.0, f64::max);
-    let bottom = samples.iter().map(|sample| sample.stress).fold(0.0, f64::min);
-    let mut figure = String::new();
-    {
-        let area = SVGBackend::with_string(&mut figure, SIZE).into_drawing_area();
-        area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&area)
-            .caption(format!("{}, {}", stage.name(), stage.model), ("sans-serif", 36))
-            .margin(28)
-            .x_label_area_size(88)
-            .y_label_area_size(128)
-            .build_cartesian_2d(low..high * 1.03, bottom..top * 1.06)?;
-        chart
-            .configure_mesh()
-            .x_desc("strain")
-            .y_desc("stress [N/m]")
-            .light_line_style(WHITE)
-            .label_style(("sans-serif", 28))
-            .draw()?;
+    let bottom = samples.iter().map(lowest).fold(0.0, f64::min);
+    let [low, high] = [&samples[0], &samples[samples.len() - 1]].map(|sample| sample.strain);
+    let [x, y] = match stage.components[0].is_bending() {
+        true => ["curvature [1/m]", "moment per width [N]"],
+        false => ["strain", "stress [N/m]"],
+    };
+    let title = format!("{}, {}", stage.name(), stage.model);
+    let axes = Axes { title: &title, x: (x, low..high * 1.03), y: (y, bottom..top * 1.06) };
+    figure(axes, |chart| {
         let upper = samples.iter().filter_map(|s| s.band.map(|[_, high]| (s.strain, high)));
         let lower = samples.iter().rev().filter_map(|s| s.band.map(|[low, _]| (s.strain, low)));
-        chart.draw_series(std::iter::once(Polygon::new(
-            upper.chain(lower).collect::<Vec<_>>(),
-            MODEL.mix(0.22),
-        )))?;
-        chart
-            .draw_series(LineSeries::new(
-                samples.iter().map(|s| (s.strain, s.stress)),
-                MODEL.stroke_width(4),
-            ))?
-            .label("fit, 95 % band")
-            .legend(|(x, y)| PathElement::new([(x, y), (x + 36, y)], MODEL.stroke_width(4)));
-        let curve = &stage.curve.curve;
-        let points = curve.strains().iter().zip(curve.stiffnesses()).map(|(&strain, k)| (strain, k * strain));
-        chart
-            .draw_series(points.map(|point| Circle::new(point, 8, MODEL.filled())))?
-            .label("control points")
-            .legend(|(x, y)| Circle::new((x + 18, y), 8, MODEL.filled()));
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
-            .legend_area_size(60)
-            .label_font(("sans-serif", 28))
-            .background_style(WHITE.mix(0.8))
-            .draw()?;
-        area.present()?;
-    }
-    Ok(figure)
+        chart.band(upper.chain(lower).collect(), MODEL)?;
+        chart.line(samples.iter().map(|s| (s.strain, s.stress)), MODEL, "fit, 95 % band")?;
+        // The last may lie beyond what was seen.
+        let points = stage.curve.points.iter().filter(|point| point.strain <= high * 1.03);
+        chart.dots(points.map(|point| (point.strain, point.stress)), (8, MODEL.filled()), "control points")
+    })
 }

@@ -137,6 +137,9 @@ pub fn fit(
     }
     if observed {
         knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, &plan.components, &gain);
+    } else {
+        // What a first pass made of it was no knowledge either.
+        *knowledge = others.clone();
     }
     let basis = Basis {
         carried: groups.into_iter().flatten().collect(),

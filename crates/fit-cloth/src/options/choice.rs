@@ -1,0 +1,90 @@
+//! What can be chosen by name, and what the library calls it.
+
+use clap::ValueEnum;
+use cloth_fit::stage::{Constraints, Variant};
+use cloth_sim::material::{Compression, Model};
+
+/// One model, or all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModelChoice {
+    /// Diagonalised StVK, discrete shells
+    Stvk,
+    /// Soft constraints, discrete shells
+    SoftConstraint,
+    /// Springs
+    Springs,
+    /// One after the other
+    All,
+}
+
+impl ModelChoice {
+    /// The models chosen.
+    pub fn models(self) -> Vec<Model> {
+        match self {
+            Self::Stvk => vec![Model::Stvk],
+            Self::SoftConstraint => vec![Model::SoftConstraint],
+            Self::Springs => vec![Model::Springs],
+            Self::All => Model::ALL.to_vec(),
+        }
+    }
+}
+
+/// Which freedoms of a model are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum VariantChoice {
+    /// Nonlinear curves, weft and warp apart
+    Orthotropic,
+    /// Constant stiffness, weft and warp apart
+    Linear,
+    /// Nonlinear curves, the same for weft and warp
+    Isotropic,
+    /// Constant stiffness, the same for weft and warp
+    LinearIsotropic,
+}
+
+impl From<VariantChoice> for Variant {
+    fn from(choice: VariantChoice) -> Self {
+        match choice {
+            VariantChoice::Orthotropic => Self::Orthotropic,
+            VariantChoice::Linear => Self::Linear,
+            VariantChoice::Isotropic => Self::Isotropic,
+            VariantChoice::LinearIsotropic => Self::LinearIsotropic,
+        }
+    }
+}
+
+/// What keeps a curve physical.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConstraintChoice {
+    /// Stress grows with strain everywhere
+    Stable,
+    /// Control values are not negative: the published rule
+    ControlPoints,
+}
+
+impl From<ConstraintChoice> for Constraints {
+    fn from(choice: ConstraintChoice) -> Self {
+        match choice {
+            ConstraintChoice::Stable => Self::Stable,
+            ConstraintChoice::ControlPoints => Self::ControlPoints,
+        }
+    }
+}
+
+/// What weft and warp do under compression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CompressionChoice {
+    /// Push back with the stiffness at zero strain
+    ZeroStrain,
+    /// Bear tension only
+    None,
+}
+
+impl From<CompressionChoice> for Compression {
+    fn from(choice: CompressionChoice) -> Self {
+        match choice {
+            CompressionChoice::ZeroStrain => Self::ZeroStrain,
+            CompressionChoice::None => Self::None,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The flags of the commands that fit.
+
+use super::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
+use crate::failure::Failure;
+use clap::Args;
+use cloth_fit::error::Error;
+use cloth_fit::frame::MeasurementSet;
+use cloth_fit::io::read_set;
+use cloth_fit::result::check_output;
+use cloth_fit::stage::Settings;
+use cloth_sim::material::Model;
+use std::path::{Path, PathBuf};
+
+/// What every command on a measurement set can be told.
+#[derive(Debug, Clone, Args)]
+pub struct SetFlags {
+    /// The measurement set
+    pub set: PathBuf,
+    /// Where to write; a former result there is replaced [default: out/ and the set's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Columns and rows of the simulation [default: as many cells as 25x25 nodes have, near square]
+    #[arg(long, value_parser = parse_nodes)]
+    pub nodes: Option<[usize; 2]>,
+    /// Most control points of a curve
+    #[arg(long, default_value_t = 5)]
+    pub points: usize,
+    /// What keeps a curve physical: stable everywhere, or only control points that are not negative
+    #[arg(long, value_enum, default_value_t = ConstraintChoice::Stable)]
+    pub constraints: ConstraintChoice,
+    /// What weft and warp do under compression: push back as at zero strain, or bear tension only
+    #[arg(long, value_enum, default_value_t = CompressionChoice::ZeroStrain)]
+    pub compression: CompressionChoice,
+    /// Let residuals above LIMIT times the noise count less; --robust alone means 3
+    #[arg(long, value_name = "LIMIT", num_args = 0..=1, require_equals = true, default_missing_value = "3")]
+    pub robust: Option<f64>,
+    /// Threads; the result is the same on any number [default: one a core]
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+/// What every fit can be told.
+#[derive(Debug, Clone, Args)]
+pub struct FitFlags {
+    /// What every command on a set can be told.
+    #[command(flatten)]
+    pub on: SetFlags,
+    /// The cloth model
+    #[arg(long, value_enum, default_value_t = ModelChoice::Stvk)]
+    pub model: ModelChoice,
+    /// Nonlinear or constant stiffness; weft and warp apart or alike
+    #[arg(long, value_enum, default_value_t = VariantChoice::Orthotropic)]
+    pub variant: VariantChoice,
+    /// A material.json whose curves are taken as exact: what it has is not fitted, but for what the command is about
+    #[arg(long, value_name = "FILE")]
+    pub known: Option<PathBuf>,
+}
+
+impl SetFlags {
+    /// Reads the set, once the folder to write into is known to be one that may be written.
+    ///
+    /// # Errors
+    /// A bad set, or an output folder that is no former result; threads that cannot be.
+    pub fn open(&self) -> Result<(MeasurementSet, PathBuf), Failure> {
+        let folder = self.output_folder();
+        self.use_threads()?;
+        check_output(&folder)?;
+        self.refuse_inside(&folder)?;
+        Ok((read_set(&self.set)?, folder))
+    }
+
+    /// The settings of a fit; model and variant are the default's.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            nodes: self.nodes,
+            points: self.points,
+            constraints: self.constraints.into(),
+            compression: self.compression.into(),
+            robust: self.robust,
+            ..Settings::default()
+        }
+    }
+
+    fn output_folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            let name = self.set.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_os_string()));
+            PathBuf::from("out").join(name.unwrap_or_else(|| "fit".into()))
+        })
+    }
+
+    /// Limits the threads of the whole program.
+    fn use_threads(&self) -> Result<(), Failure> {
+        let Some(threads) = self.threads else { return Ok(()) };
+        let refused =
+            |found: String| Error::Setting { field: "threads", found, expected: "1 to 1024".into() };
+        if !(1..=1024).contains(&threads) {
+            return Err(refused(threads.to_string()).into());
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|error| refused(error.to_string()).into())
+    }
+
+    /// A result in the place of its own measurements, or among them, would destroy the set.
+    fn refuse_inside(&self, folder: &Path) -> Result<(), Failure> {
+        if is_inside(folder, &self.set) {
+            let (found, expected) = (folder.display().to_string(), "a folder outside the measurement set");
+            return Err(Error::input(&self.set, None, "--out", found, expected).into());
+        }
+        Ok(())
+    }
+}
+
+impl FitFlags {
+    /// The settings of one model's fit.
+    pub fn settings(&self, model: Model) -> Settings {
+        Settings { model, variant: self.variant.into(), ..self.on.settings() }
+    }
+}
+
+/// True if a path leads into a folder, or is that folder; links are followed where they exist.
+pub(crate) fn is_inside(path: &Path, folder: &Path) -> bool {
+    let absolute = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path));
+    matches!((absolute(path), absolute(folder)), (Ok(path), Ok(folder)) if path.starts_with(&folder))
+}
+
+/// Columns and rows, as in 25x25.
+///
+/// # Errors
+/// Text of another form.
+pub fn parse_nodes(text: &str) -> Result<[usize; 2], String> {
+    let sides = text.split_once('x').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+    sides.ok_or_else(|| format!("{text}: expected columns and rows, as in 25x25"))
+}

@@ -1,0 +1,125 @@
+//! One stage: what it used, how it went, the curve.
+
+use super::{list, seen, unit};
+use cloth_fit::report::StageReport;
+use cloth_fit::simulation::Objective;
+use std::fmt::Write;
+
+/// A stage of the fit; with all its iterations, if `verbose`.
+pub fn stage(stage: &StageReport, verbose: bool) -> String {
+    let growth = if verbose { iterations(stage) } else { levels(stage) };
+    format!("{}{growth}{}", basis(stage), curve(stage))
+}
+
+/// What was fitted to what, and what was taken as known.
+fn basis(stage: &StageReport) -> String {
+    let pass = if stage.pass > 1 { ", second pass" } else { "" };
+    let compared = match stage.objective {
+        Objective::Forces => "clip forces",
+        Objective::Positions => "shapes",
+    };
+    let sequences = list(stage.sequences.iter().map(|s| format!("{} ({} frames)", s.name, s.frames)));
+    let mut text =
+        format!("{}, {}{pass}\n  fitted to the {compared} of {sequences}\n", stage.name(), stage.model);
+    let basis = &stage.basis;
+    if !basis.known.is_empty() {
+        let exact = basis.known.iter().filter(|component| !basis.carried.contains(component));
+        let _ = write!(text, "  known: {}", list(&basis.known));
+        let exact = list(exact);
+        let _ = match exact.is_empty() {
+            true => writeln!(text, " (the band includes their errors)"),
+            false => writeln!(text, " (taken as exact: {exact})"),
+        };
+    }
+    if !basis.assumed.is_empty() {
+        let _ = writeln!(text, "  assumed constant, since not known: {}", list(&basis.assumed));
+    }
+    text
+}
+
+/// The residual of every number of control points.
+fn levels(stage: &StageReport) -> String {
+    let (name, factor) = unit(stage);
+    let levels = list(stage.levels.iter().map(|level| {
+        let kept = if level.points == stage.curve.curve.len() { " (kept)" } else { "" };
+        format!("{}: {:.3e}{kept}", level.points, factor * level.rms)
+    }));
+    format!("  rms [{name}] by control points: {levels}\n{}", spent(stage))
+}
+
+/// The iterations, level by level.
+fn iterations(stage: &StageReport) -> String {
+    let (name, factor) = unit(stage);
+    let rms = format!("rms [{name}]");
+    let mut text = format!("  points  iteration  {rms:>9}     gain      step    radius  kept\n");
+    for level in &stage.levels {
+        if level.iterations.is_empty() {
+            let _ = writeln!(text, "  {:6}  {:9}  {:9.3e}", level.points, 0, factor * level.rms);
+        }
+        // The level's residual belongs to its last iteration; sums of squares give the others in proportion.
+        let last = level.iterations.last().map_or(1.0, |iteration| iteration.sum_of_squares);
+        for iteration in &level.iterations {
+            let share = if last > 0.0 { (iteration.sum_of_squares / last).sqrt() } else { 1.0 };
+            let gain = iteration.gain.map_or("-".into(), |gain| format!("{gain:.1e}"));
+            let _ = writeln!(
+                text,
+                "  {:6}  {:9}  {:9.3e}  {gain:>8}  {:8.1e}  {:8.1e}  {}",
+                level.points,
+                iteration.iteration,
+                factor * level.rms * share,
+                iteration.step,
+                iteration.radius,
+                if iteration.accepted { "yes" } else { "no" }
+            );
+        }
+    }
+    text + &spent(stage)
+}
+
+fn spent(stage: &StageReport) -> String {
+    let counters = &stage.counters;
+    format!(
+        "  {} equilibria, {} Newton steps, {} factorisations, {:.2} s; {}\n",
+        counters.equilibria, counters.iterations, counters.factorisations, stage.seconds, stage.growth
+    )
+}
+
+/// The control points with their uncertainty.
+fn curve(stage: &StageReport) -> String {
+    let report = &stage.curve;
+    if !report.observed {
+        let seen = format!("{} of {} directions", report.rank, report.curve.len());
+        return format!("  NOT observed: the measurements do not tell the curve's scale ({seen} seen)\n");
+    }
+    let [strain, stiffness, stress] = match stage.components[0].is_bending() {
+        true => ["curvature [1/m]", "rigidity [N m]", "moment [N]"],
+        false => ["strain", "stiffness [N/m]", "stress [N/m]"],
+    };
+    let mut text = format!(
+        "  {strain:<15}  {stiffness:>15}             {stress:>12}   (seen from {}, {:.0} % of the range)\n",
+        seen(stage),
+        100.0 * report.share_visited
+    );
+    for (i, point) in report.points.iter().enumerate() {
+        let size = report.curve.stiffnesses()[i].abs().max(f64::MIN_POSITIVE);
+        let deviation = match report.half_bands[i] {
+            Some(half) if half < 10.0 * size => format!("± {:.1} %", 100.0 * half / size),
+            _ => "not known".into(),
+        };
+        let _ = writeln!(
+            text,
+            "  {:<15.5}  {:15.5e} {deviation:>10}  {:12.5e}",
+            point.strain, point.stiffness, point.stress
+        );
+    }
+    for i in &report.unseen {
+        let _ = writeln!(text, "  no frame sees control point {}", i + 1);
+    }
+    for (i, j, correlation) in &report.correlated {
+        let _ = writeln!(text, "  correlated: control points {} and {} ({correlation:.3})", i + 1, j + 1);
+    }
+    if report.active_constraints > 0 {
+        let _ = writeln!(text, "  {} stability constraints hold the curve", report.active_constraints);
+    }
+    text
+}

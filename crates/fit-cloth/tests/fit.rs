@@ -1,0 +1,209 @@
+//! The programs `fit-cloth shear`, `bend`, `fit` and `compare`, run as a user runs them, on a set of every kind of test
+//! whose curves are known in closed form.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use cloth_fit::incremental::{self, Stage};
+use cloth_fit::io::write_set;
+use cloth_fit::knowledge::Knowledge;
+use cloth_fit::material_file::MaterialFile;
+use cloth_fit::stage::{Settings, Watch};
+use cloth_sim::material::{Component, Model};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str], within: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fit-cloth")).args(arguments).current_dir(within).output().unwrap()
+}
+
+/// A folder with the full set in `set`.
+fn folder() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_path_buf();
+    write_set(&path.join("set"), &support::full_set()).unwrap();
+    (folder, path)
+}
+
+fn fit(command: &str, within: &Path, out: &str, more: &[&str]) -> Output {
+    run(&[&[command, "set", "--nodes", "9x9", "--out", out], more].concat(), within)
+}
+
+fn said(output: &Output) -> [String; 2] {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap())
+}
+
+fn rows(file: &Path) -> (String, Vec<Vec<f64>>) {
+    let text = fs::read_to_string(file).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let row = |line: &str| line.split(',').map(|field| field.parse().unwrap()).collect();
+    (header.into(), rows.lines().map(row).collect())
+}
+
+#[test]
+fn fit_finds_every_curve_that_is_shown_and_says_which_is_not() {
+    let (_keep, path) = folder();
+    fs::remove_dir_all(path.join("set/bend-warp")).unwrap();
+    let output = fit("fit", &path, "out", &["--variant", "linear"]);
+    let [text, warnings] = said(&output);
+    assert!(output.status.success(), "{warnings}");
+    assert!(
+        warnings.starts_with("warning: stvk: bend-warp is not observed: no sequence shows it"),
+        "{warnings}"
+    );
+    for words in
+        ["fitted to the shapes of bend-weft", "moment", "complex-shear (complex-shear) takes no part"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let expected = [("stretch-weft", 500.0), ("stretch-warp", 800.0), ("shear", 60.0), ("bend-weft", 6e-4)];
+    for (component, stiffness) in expected {
+        let (header, rows) = rows(&path.join(format!("out/curves/{component}.csv")));
+        let bends = component.starts_with("bend");
+        assert_eq!(header.starts_with("curvature_per_m,rigidity_n_m,moment_n"), bends, "{header}");
+        let last = rows.last().unwrap();
+        assert_eq!(rows.len(), 201);
+        assert!((last[1] / stiffness - 1.0).abs() < 0.05, "{component}: {last:?}");
+    }
+    assert!(!path.join("out/curves/bend-warp.csv").exists());
+    assert!(
+        path.join("out/plots/bend-weft-moment.svg").exists()
+            && path.join("out/plots/shear-force.svg").exists()
+    );
+    let residuals = fs::read_to_string(path.join("out/residuals.csv")).unwrap();
+    assert_eq!(residuals.lines().count(), 1 + 4, "{residuals}");
+    assert!(residuals.lines().any(|line| line.starts_with("bend-weft,bend-weft,,,")), "{residuals}");
+    let material = MaterialFile::read(&path.join("out/material.json")).unwrap();
+    assert!(!material.curves[&Component::BendWarp].observed);
+    assert_eq!(warnings.lines().count(), 6 - material.curves().unwrap().components().count());
+}
+
+#[test]
+fn the_material_file_gives_every_curve_back_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = support::full_set();
+    for model in Model::ALL {
+        let settings = Settings { model, nodes: Some([9, 9]), points: 2, ..Settings::default() };
+        let known = Knowledge::default();
+        let report = incremental::fit(&set, &Stage::ALL, &known, &settings, &mut Watch::default()).unwrap();
+        let file = MaterialFile::new(&set, &settings, &report, None);
+        let path = folder.path().join("material.json");
+        fs::write(&path, file.to_json()).unwrap();
+        let read = MaterialFile::read(&path).unwrap();
+        assert_eq!(read, file);
+        assert_eq!(read.curves().unwrap(), *report.curves());
+    }
+}
+
+#[test]
+fn what_is_given_is_not_fitted() {
+    let (_keep, path) = folder();
+    assert!(fit("stretch", &path, "first", &[]).status.success());
+    let known = "first/material.json";
+    let output = fit("shear", &path, "second", &["--known", known]);
+    let [text, warnings] = said(&output);
+    assert!(output.status.success() && warnings.is_empty(), "{warnings}");
+    assert!(text.contains("taken as exact: stretch-weft, stretch-warp"), "{text}");
+    let material = MaterialFile::read(&path.join("second/material.json")).unwrap();
+    let given = |component| material.curves[&component].given;
+    assert!(given(Component::StretchWeft) && !given(Component::Shear));
+    assert!(!path.join("second/curves/stretch-weft.csv").exists());
+    for (more, words) in [
+        (&["--model", "springs"][..], "model: found stvk, expected springs"),
+        (&["--compression", "none"], "compression"),
+        (&["--out", "first"], "another --out"),
+    ] {
+        let out = if more[0] == "--out" { "first" } else { "third" };
+        let more = if more[0] == "--out" { &[][..] } else { more };
+        let output = fit("bend", &path, out, &[&["--known", known], more].concat());
+        let [_, errors] = said(&output);
+        assert_eq!(output.status.code(), Some(3), "{errors}");
+        assert!(errors.contains(words), "{errors}");
+    }
+    let output = fit("fit", &path, "third", &["--known", "second/residuals.csv"]);
+    assert_eq!(output.status.code(), Some(3));
+}
+
+#[test]
+fn weft_and_warp_share_the_curves_of_an_isotropic_cloth() {
+    let (_keep, path) = folder();
+    let output = fit("bend", &path, "out", &["--variant", "linear-isotropic", "--robust", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let curve = &json["stvk"]["curves"]["bend-warp"];
+    assert_eq!(curve["shared_by"], serde_json::json!(["bend-weft", "bend-warp"]));
+    assert!(curve["control_points"][0]["stiffness_n_m"].is_f64() && curve["noise_m"].is_f64(), "{curve}");
+    assert_eq!(json["stvk"]["variant"], "linear-isotropic");
+    let [weft, warp] =
+        ["weft", "warp"].map(|d| fs::read(path.join(format!("out/curves/bend-{d}.csv"))).unwrap());
+    assert!(weft == warp);
+    assert_eq!(fit("stretch", &path, "out", &["--robust=0"]).status.code(), Some(3));
+}
+
+#[test]
+fn compare_ranks_twelve_by_what_no_fit_saw() {
+    let (_keep, path) = folder();
+    // The second replaces the first.
+    for more in [&["--points", "1"][..], &["--points", "2"]] {
+        let output = fit("compare", &path, "out", more);
+        let [text, errors] = said(&output);
+        // Some may not converge; that is told, and the rest stands.
+        assert!(matches!(output.status.code(), Some(0 | 4)), "{errors}");
+        assert!(text.contains("Ranked by the residual on the sequences left for validation"), "{text}");
+    }
+    let text = fs::read_to_string(path.join("out/compare.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let rows = json["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 12);
+    // The picture frame is uniform shear, which springs take otherwise than the law the set was made with.
+    assert_ne!(rows[0]["model"], "springs");
+    assert_eq!(rows[11]["model"], "springs");
+    assert!(rows[0]["validation"]["relative"].as_f64().unwrap() < 1e-3, "{text}");
+    let table = fs::read_to_string(path.join("out/compare.csv")).unwrap();
+    let cells = |line: &str| line.split(',').count();
+    assert!(table.lines().all(|line| cells(line) == cells(table.lines().next().unwrap())), "{table}");
+    fs::write(path.join("out/notes.txt"), "mine").unwrap();
+    assert_eq!(fit("compare", &path, "out", &[]).status.code(), Some(3));
+}
+
+#[test]
+fn a_sequence_that_others_replace_can_be_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut set = support::full_set();
+    set.sequences.retain(|sequence| sequence.name.starts_with("stretch"));
+    let mut again = set.sequences[1].clone();
+    again.name = "stretch-weft-again".into();
+    set.sequences.push(again);
+    write_set(&folder.path().join("set"), &set).unwrap();
+    let output = fit("compare", folder.path(), "out", &["--points", "1", "--leave-one-out", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = json["rows"].as_array().unwrap();
+    let linear = rows.iter().find(|row| row["model"] == "stvk" && row["variant"] == "linear").unwrap();
+    let left = |name: &str| {
+        let all = linear["left_out"].as_array().unwrap();
+        all.iter().find(|left| left["sequence"] == name).unwrap().clone()
+    };
+    assert!(left("stretch-weft")["distance"]["relative"].as_f64().unwrap() < 1e-6, "{linear}");
+    assert_eq!(left("stretch-warp")["lost"], serde_json::json!(["stretch-warp"]));
+    // Not every variant could spare the same sequences.
+    assert_eq!(json["ranked_by"], "fit");
+}
+
+#[test]
+fn the_example_of_every_help_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
+    let fixtures = fixtures.canonicalize().unwrap();
+    for command in ["stretch", "shear", "bend", "fit", "compare"] {
+        let [help, _] = said(&run(&[command, "--help"], folder.path()));
+        let examples: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  fit-cloth ")).collect();
+        assert!(!examples.is_empty() && help.contains("Example"), "{help}");
+        for (number, example) in examples.into_iter().enumerate() {
+            let example = example.replace("fixtures/", &format!("{}/", fixtures.display()));
+            let example = example.replace("--out out", &format!("--out {command}-{number}"));
+            let output = run(&example.split(' ').collect::<Vec<_>>(), folder.path());
+            assert!(output.status.success(), "{example}: {}", said(&output)[1]);
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The tables of a result folder.
+
+use crate::incremental::FitReport;
+use crate::report::{Sample, StageReport};
+use std::fmt::Write;
+
+/// 201 rows; the band's columns are absent where the data do not see all of the curve.
+pub(super) fn curve_table(stage: &StageReport) -> String {
+    let curve = &stage.curve;
+    let banded = curve.samples.iter().all(|sample| sample.band.is_some());
+    let (columns, band) = if stage.components[0].is_bending() {
+        ("curvature_per_m,rigidity_n_m,moment_n", ",moment_low_n,moment_high_n")
+    } else {
+        ("strain,stiffness_n_per_m,stress_n_per_m", ",stress_low_n_per_m,stress_high_n_per_m")
+    };
+    let mut table = format!("{columns}{}\n", if banded { band } else { "" });
+    for Sample { strain, stiffness, stress, band } in &curve.samples {
+        let _ = write!(table, "{strain},{stiffness},{stress}");
+        if let Some([low, high]) = band.filter(|_| banded) {
+            let _ = write!(table, ",{low},{high}");
+        }
+        table.push('\n');
+    }
+    table
+}
+
+/// One row a sequence; what was not measured is empty.
+pub(super) fn residual_table(report: &FitReport) -> String {
+    let mut table = String::from(
+        "sequence,kind,rms_force_n,largest_force_n,rms_position_m,frames,frames_left_out,iterations,seconds\n",
+    );
+    let cell = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    for (stage, sequence) in report.sequences() {
+        let iterations: usize = stage.levels.iter().map(|level| level.iterations.len()).sum();
+        let _ = writeln!(
+            table,
+            "{},{},{},{},{},{},{},{iterations},{:.3}",
+            sequence.name,
+            sequence.kind,
+            cell(sequence.force_rms),
+            cell(sequence.force_rms.map(|_| sequence.force_largest)),
+            cell(sequence.position_rms),
+            sequence.frames,
+            stage.left_out(sequence),
+            stage.seconds
+        );
+    }
+    table
+}
+
+/// Every measured force component (its direction x, y, z in the specimen's frame) beside its simulation, for plots.
+pub(super) fn force_table(report: &FitReport) -> String {
+    let mut table = String::from("sequence,frame,clip,x,y,z,extension,measured_n,simulated_n\n");
+    for (_, sequence) in report.sequences() {
+        for row in &sequence.forces {
+            let _ = writeln!(
+                table,
+                "{},{},{},{},{},{},{},{},{}",
+                sequence.name,
+                row.frame,
+                row.clip,
+                row.direction.x,
+                row.direction.y,
+                row.direction.z,
+                row.extension,
+                row.measured,
+                row.simulated
+            );
+        }
+    }
+    table
+}
