@@ -2,12 +2,13 @@
 
 pub mod compare;
 pub mod fit;
+pub mod goal;
 pub mod import;
 pub mod rig;
 
 use crate::failure::Failure;
 use crate::options::{Command, Options, Telling};
-use fit::Goal;
+use goal::Goal;
 use serde_json::Value;
 use std::io::Write;
 

@@ -8,7 +8,7 @@ pub(crate) use flags::is_inside;
 pub use flags::{FitFlags, SetFlags, parse_nodes};
 
 use crate::command::compare::CompareOptions;
-use crate::command::fit;
+use crate::command::goal;
 use crate::command::import::Import;
 use crate::command::rig::RigOptions;
 use clap::{Args, Parser, Subcommand};
@@ -34,16 +34,16 @@ pub enum Command {
     /// Measure a known cloth on a virtual rig: a measurement set to try a fit on
     Rig(RigOptions),
     /// Fit weft and warp stretch curves
-    #[command(after_help = fit::STRETCH_EXAMPLE)]
+    #[command(after_help = goal::STRETCH_EXAMPLE)]
     Stretch(FitFlags),
     /// Fit the shear curve, after the stretch curves that it builds on
-    #[command(after_help = fit::SHEAR_EXAMPLE)]
+    #[command(after_help = goal::SHEAR_EXAMPLE)]
     Shear(FitFlags),
     /// Fit the bending curves, after the stretch and shear curves that they build on
-    #[command(after_help = fit::BEND_EXAMPLE)]
+    #[command(after_help = goal::BEND_EXAMPLE)]
     Bend(FitFlags),
     /// Fit all curves that a set shows
-    #[command(after_help = fit::FIT_EXAMPLE)]
+    #[command(after_help = goal::FIT_EXAMPLE)]
     Fit(FitFlags),
     /// Fit three models in four variants, and rank them
     Compare(CompareOptions),

@@ -142,6 +142,20 @@ fn weft_and_warp_share_the_curves_of_an_isotropic_cloth() {
 }
 
 #[test]
+fn a_model_that_fails_costs_only_its_own_result() {
+    let (_keep, path) = folder();
+    // Cells so long that a diagonal would count as a yarn.
+    let output =
+        run(&["stretch", "set", "--nodes", "65x3", "--model", "all", "--out", "out", "--json"], &path);
+    let [text, warnings] = said(&output);
+    assert_eq!(output.status.code(), Some(4), "{warnings}");
+    assert!(warnings.contains("warning: springs has no result"), "{warnings}");
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert!(json["springs"]["failure"].is_string() && json["stvk"]["curves"].is_object(), "{text}");
+    assert!(path.join("out/soft-constraint/material.json").exists() && !path.join("out/springs").exists());
+}
+
+#[test]
 fn compare_ranks_twelve_by_what_no_fit_saw() {
     let (_keep, path) = folder();
     // The second replaces the first.

@@ -69,6 +69,5 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
     })?;
     let text = format!("{}\nWritten to {}", text::comparison(&comparison), folder.display());
     tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
-    let converged = comparison.rows.iter().filter(|row| row.failure.is_none()).all(|row| row.converged);
-    Ok(if converged { Outcome::Done } else { Outcome::NotConverged })
+    Ok(if comparison.rows.iter().all(|row| row.converged) { Outcome::Done } else { Outcome::NotConverged })
 }

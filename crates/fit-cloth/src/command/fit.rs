@@ -1,5 +1,6 @@
 //! `fit-cloth stretch | shear | bend | fit`: curves from a measurement set.
 
+use super::goal::Goal;
 use super::{Outcome, warn};
 use crate::failure::Failure;
 use crate::options::{FitFlags, Telling, is_inside};
@@ -8,92 +9,15 @@ use crate::progress::Progress;
 use crate::text;
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::incremental::{self, FitReport, Stage};
+use cloth_fit::incremental::{self, FitReport};
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_result;
-use cloth_fit::stage::Settings;
 use cloth_fit::store::replace_folder;
-use cloth_sim::material::Component;
-use serde_json::{Map, Value};
+use cloth_sim::material::Model;
+use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
-
-/// The example of `fit-cloth stretch`.
-pub const STRETCH_EXAMPLE: &str = "\
-Example:
-  fit-cloth stretch fixtures/cotton-denim --out out
-  fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out
-
-Writes material.json, curves/*.csv, residuals.csv, forces.csv and plots/*.svg; with --model all, a folder for each model.";
-
-/// The example of `fit-cloth shear`.
-pub const SHEAR_EXAMPLE: &str = "\
-Example:
-  fit-cloth shear fixtures/cotton-denim --out out
-
-Uses sequences of kind shear and stretch-bias; without them only the stretch curves are fitted, and a warning says so.
-With --known FILE the stretch curves of a former fit are taken from its material.json.";
-
-/// The example of `fit-cloth bend`.
-pub const BEND_EXAMPLE: &str = "\
-Example:
-  fit-cloth bend fixtures/cotton-denim --out out
-
-Uses sequences of kind bend-weft, bend-warp and bend-bias; what a set lacks is not fitted, and a warning says so.
-With --known FILE the stretch and shear curves of a former fit are taken from its material.json.";
-
-/// The example of `fit-cloth fit`.
-pub const FIT_EXAMPLE: &str = "\
-Example:
-  fit-cloth fit fixtures/cotton-denim --out out
-  fit-cloth fit fixtures/cotton-denim --variant isotropic --robust --verbose --out out
-
-Fits stretch, shear and bending in this order, then shear and bending once more. What a set lacks is not fitted, and a
-warning says so.";
-
-/// What a command is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Goal {
-    /// Stretch.
-    Stretch,
-    /// Shear, and what it builds on.
-    Shear,
-    /// Bending, and what it builds on.
-    Bend,
-    /// All that is not given.
-    All,
-}
-
-impl Goal {
-    fn stages(self) -> &'static [Stage] {
-        match self {
-            Self::Stretch => &Stage::ALL[..1],
-            Self::Shear => &Stage::ALL[..2],
-            Self::Bend | Self::All => &Stage::ALL,
-        }
-    }
-
-    /// What is fitted even if it is given.
-    fn anew(self) -> &'static [Component] {
-        match self {
-            Self::Stretch => Stage::Stretch.components(),
-            Self::Shear => Stage::Shear.components(),
-            Self::Bend => Stage::Bend.components(),
-            Self::All => &[],
-        }
-    }
-
-    fn components(self) -> impl Iterator<Item = Component> {
-        self.stages().iter().flat_map(|stage| stage.components()).copied()
-    }
-
-    /// The tests that show what is not known.
-    fn kinds(self, known: &Knowledge) -> Vec<Kind> {
-        let fits = |stage: &&Stage| !stage.components().iter().all(|&component| known.knows(component));
-        self.stages().iter().filter(fits).flat_map(|stage| stage.kinds()).copied().collect()
-    }
-}
 
 /// What one model's fit has found.
 struct Fitted {
@@ -101,7 +25,7 @@ struct Fitted {
     material: MaterialFile,
 }
 
-/// Fits what the command is about, and what that builds on.
+/// Fits what the command is about, and what that builds on. A model that fails beside others costs only its own result.
 ///
 /// # Errors
 /// Bad input, nothing to fit, or an output folder that is no former result; what the operating system refuses.
@@ -112,61 +36,87 @@ pub fn run(
     output: &mut impl Write,
 ) -> Result<Outcome, Failure> {
     let (set, folder) = flags.on.open()?;
-    let all_settings: Vec<Settings> =
-        flags.model.models().into_iter().map(|model| flags.settings(model)).collect();
-    let given = flags.known.as_deref().map(|path| read_known(path, &folder, &all_settings)).transpose()?;
-    let mut results = Vec::new();
-    for settings in &all_settings {
-        let known = match &given {
-            Some(file) => Knowledge::exact(file.curves()?).without(goal.anew()),
-            None => Knowledge::default(),
-        };
-        let progress = Progress::new(&settings.model.to_string(), !telling.quiet);
-        let report = incremental::fit(&set, goal.stages(), &known, settings, &mut progress.watch())?;
-        progress.finish();
-        if report.stages.is_empty() {
-            return Err(nothing(&flags.on.set, &set, &goal.kinds(&known)));
+    let models = flags.model.models();
+    let given = flags.known.as_deref().map(|path| read_known(path, &folder, flags)).transpose()?;
+    let (mut results, mut failures) = (Vec::new(), Vec::new());
+    for &model in &models {
+        match fit_model(goal, &set, flags, model, given.as_ref(), telling) {
+            Ok(fitted) => results.push(fitted),
+            Err(failure) => failures.push((model, failure)),
         }
-        let material = MaterialFile::new(&set, settings, &report, given.as_ref());
-        results.push(Fitted { report, material });
     }
-    write(&folder, &results)?;
+    if results.is_empty() {
+        return failures.into_iter().next().map_or(Ok(Outcome::Done), |(_, failure)| Err(failure));
+    }
+    write(&folder, models.len() > 1, &results)?;
     // All is on disk before the first word: a reader who has read enough must not cost the result.
+    for (model, failure) in &failures {
+        warn(telling, &format!("{model} has no result: {}", failure.in_words()));
+    }
     for Fitted { report, .. } in &results {
         for missing in goal.components().filter_map(|component| text::missing(report, component)) {
             warn(telling, &format!("{}: {missing}", report.model));
         }
     }
     if telling.json {
-        writeln!(output, "{}", json(&results))?;
+        writeln!(output, "{}", json(&results, &failures))?;
     } else if !telling.quiet {
         for fitted in &results {
             tell_model(goal, &set, &fitted.report, telling, output)?;
         }
         writeln!(output, "Written to {}", folder.display())?;
     }
-    let converged = results.iter().all(|fitted| fitted.report.converged());
+    let converged = failures.is_empty() && results.iter().all(|fitted| fitted.report.converged());
     Ok(if converged { Outcome::Done } else { Outcome::NotConverged })
 }
 
 /// The given curves; they must be over the strains of the model that is fitted, and must outlive the fit.
-fn read_known(path: &Path, folder: &Path, all_settings: &[Settings]) -> Result<MaterialFile, Failure> {
+fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFile, Failure> {
+    let refuse = |field: &str, found: String, expected: String| {
+        Err(Failure::from(Error::input(path, None, field, found, expected)))
+    };
     if is_inside(path, folder) {
         let found = format!("a file in {}, which will be replaced", folder.display());
-        return Err(Error::input(path, None, "--known", found, "another --out").into());
+        return refuse("--known", found, "another --out".into());
     }
     let file = MaterialFile::read(path)?;
-    for settings in all_settings {
+    for settings in flags.model.models().into_iter().map(|model| flags.settings(model)) {
         if file.model != settings.model {
-            let (found, expected) = (file.model.to_string(), format!("{}, as --model says", settings.model));
-            return Err(Error::input(path, None, "model", found, expected).into());
+            return refuse("model", file.model.to_string(), format!("{}, as --model says", settings.model));
         }
         if file.compression != settings.compression {
-            let found = format!("{:?}", file.compression);
-            return Err(Error::input(path, None, "compression", found, "the same as --compression").into());
+            return refuse(
+                "compression",
+                format!("{:?}", file.compression),
+                "the same as --compression".into(),
+            );
         }
     }
     Ok(file)
+}
+
+fn fit_model(
+    goal: Goal,
+    set: &MeasurementSet,
+    flags: &FitFlags,
+    model: Model,
+    given: Option<&MaterialFile>,
+    telling: Telling,
+) -> Result<Fitted, Failure> {
+    let settings = flags.settings(model);
+    let known = match given {
+        Some(file) => Knowledge::exact(file.curves()?).without(goal.anew()),
+        None => Knowledge::default(),
+    };
+    let progress = Progress::new(&model.to_string(), !telling.quiet);
+    let report = incremental::fit(set, goal.stages(), &known, &settings, &mut progress.watch());
+    progress.finish();
+    let report = report?;
+    if report.stages.is_empty() {
+        return Err(nothing(&flags.on.set, set, &goal.kinds(&known)));
+    }
+    let material = MaterialFile::new(set, &settings, &report, given);
+    Ok(Fitted { report, material })
 }
 
 /// No sequence of a set is of the kinds that are wanted.
@@ -184,12 +134,12 @@ pub(super) fn nothing(path: &Path, set: &MeasurementSet, kinds: &[Kind]) -> Fail
     Error::input(path, None, "kind", found, expected).into()
 }
 
-fn write(folder: &Path, results: &[Fitted]) -> Result<(), Failure> {
+fn write(folder: &Path, several: bool, results: &[Fitted]) -> Result<(), Failure> {
     replace_folder(folder, |temporary| {
         results.iter().try_for_each(|Fitted { report, material }| {
-            let folder = match results.len() {
-                1 => temporary.to_path_buf(),
-                _ => temporary.join(report.model.to_string()),
+            let folder = match several {
+                true => temporary.join(report.model.to_string()),
+                false => temporary.to_path_buf(),
             };
             write_result(&folder, report, material)?;
             write_plots(&folder, report)
@@ -198,12 +148,14 @@ fn write(folder: &Path, results: &[Fitted]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Each model's `material.json` under its name.
-fn json(results: &[Fitted]) -> Value {
-    let entry = |Fitted { report, material }: &Fitted| {
+/// Each model's `material.json` under its name, or why there is none.
+fn json(results: &[Fitted], failures: &[(Model, Failure)]) -> Value {
+    let fitted = results.iter().map(|Fitted { report, material }| {
         (report.model.to_string(), serde_json::to_value(material).unwrap_or(Value::Null))
-    };
-    Value::Object(results.iter().map(entry).collect::<Map<_, _>>())
+    });
+    let failed =
+        failures.iter().map(|(model, failure)| (model.to_string(), json!({ "failure": failure.in_words() })));
+    Value::Object(fitted.chain(failed).collect::<Map<_, _>>())
 }
 
 /// What one model's fit has found, for a person.

@@ -26,8 +26,12 @@ pub struct Distance {
 impl Distance {
     /// Of the sequences that were fitted, with the last curves.
     pub(super) fn of_fit(set: &MeasurementSet, report: &FitReport) -> Self {
-        let sequences: Vec<&SequenceReport> = report.sequences().into_iter().map(|(_, s)| s).collect();
-        Self::new(set, &sequences, report.last_stages().map(|stage| stage.dropped.len()).sum())
+        let (mut sequences, mut dropped) = (Vec::new(), 0);
+        for (stage, sequence) in report.sequences() {
+            sequences.push(sequence);
+            dropped += stage.left_out(sequence) - sequence.at_rest;
+        }
+        Self::new(set, &sequences, dropped)
     }
 
     /// Of sequences that were predicted.

@@ -1,0 +1,84 @@
+//! What `fit-cloth stretch | shear | bend | fit` are about, and their examples.
+
+use cloth_fit::frame::Kind;
+use cloth_fit::incremental::Stage;
+use cloth_fit::knowledge::Knowledge;
+use cloth_sim::material::Component;
+
+/// The example of `fit-cloth stretch`.
+pub const STRETCH_EXAMPLE: &str = "\
+Example:
+  fit-cloth stretch fixtures/cotton-denim --out out
+  fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out
+
+Writes material.json, curves/*.csv, residuals.csv, forces.csv and plots/*.svg; with --model all, a folder for each model.";
+
+/// The example of `fit-cloth shear`.
+pub const SHEAR_EXAMPLE: &str = "\
+Example:
+  fit-cloth shear fixtures/cotton-denim --out out
+
+Uses sequences of kind shear and stretch-bias; without them only the stretch curves are fitted, and a warning says so.
+With --known FILE the stretch curves of a former fit are taken from its material.json.";
+
+/// The example of `fit-cloth bend`.
+pub const BEND_EXAMPLE: &str = "\
+Example:
+  fit-cloth bend fixtures/cotton-denim --out out
+
+Uses sequences of kind bend-weft, bend-warp and bend-bias; what a set lacks is not fitted, and a warning says so.
+With --known FILE the stretch and shear curves of a former fit are taken from its material.json.";
+
+/// The example of `fit-cloth fit`.
+pub const FIT_EXAMPLE: &str = "\
+Example:
+  fit-cloth fit fixtures/cotton-denim --out out
+  fit-cloth fit fixtures/cotton-denim --variant isotropic --robust --verbose --out out
+
+Fits stretch, shear and bending in this order, then shear and bending once more. What a set lacks is not fitted, and a
+warning says so.";
+
+/// What a command is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Goal {
+    /// Stretch.
+    Stretch,
+    /// Shear, and what it builds on.
+    Shear,
+    /// Bending, and what it builds on.
+    Bend,
+    /// All that is not given.
+    All,
+}
+
+impl Goal {
+    /// What is fitted, in order, unless it is given.
+    pub fn stages(self) -> &'static [Stage] {
+        match self {
+            Self::Stretch => &Stage::ALL[..1],
+            Self::Shear => &Stage::ALL[..2],
+            Self::Bend | Self::All => &Stage::ALL,
+        }
+    }
+
+    /// What is fitted even if it is given.
+    pub fn anew(self) -> &'static [Component] {
+        match self {
+            Self::Stretch => Stage::Stretch.components(),
+            Self::Shear => Stage::Shear.components(),
+            Self::Bend => Stage::Bend.components(),
+            Self::All => &[],
+        }
+    }
+
+    /// The curves that there should be in the end.
+    pub fn components(self) -> impl Iterator<Item = Component> {
+        self.stages().iter().flat_map(|stage| stage.components()).copied()
+    }
+
+    /// The tests that show what is not known.
+    pub fn kinds(self, known: &Knowledge) -> Vec<Kind> {
+        let fits = |stage: &&Stage| !stage.components().iter().all(|&component| known.knows(component));
+        self.stages().iter().filter(fits).flat_map(|stage| stage.kinds()).copied().collect()
+    }
+}
