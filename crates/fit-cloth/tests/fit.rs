@@ -98,6 +98,16 @@ fn the_material_file_gives_every_curve_back_exactly() {
 }
 
 #[test]
+fn the_curves_are_the_same_on_one_and_on_two_threads() {
+    let (_keep, path) = folder();
+    let [one, two] = ["1", "2"].map(|threads| {
+        let _ = fit("fit", &path, threads, &["--points", "2", "--threads", threads]);
+        fs::read(path.join(threads).join("material.json")).unwrap()
+    });
+    assert!(one == two);
+}
+
+#[test]
 fn what_is_given_is_not_fitted() {
     let (_keep, path) = folder();
     assert!(fit("stretch", &path, "first", &[]).status.success());

@@ -14,10 +14,12 @@
 
 mod distance;
 mod leave_out;
+mod ranking;
 mod table;
 
 pub use distance::Distance;
 pub use leave_out::LeftOut;
+pub use ranking::{Comparison, Criterion};
 
 use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
@@ -31,28 +33,6 @@ use serde::Serialize;
 
 /// Tests that no stage fits.
 pub const VALIDATION: [Kind; 2] = [Kind::ComplexShear, Kind::CornerPull];
-
-/// Models and variants, best first.
-#[must_use]
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Comparison {
-    /// What ranks them.
-    pub ranked_by: Criterion,
-    /// One row each.
-    pub rows: Vec<Row>,
-}
-
-/// Whose overall figure ranks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Criterion {
-    /// Of the sequences left for validation.
-    Validation,
-    /// Of sequences left out one at a time.
-    LeaveOneOut,
-    /// Of the fitted sequences.
-    Fit,
-}
 
 /// One model in one variant.
 #[must_use]
@@ -108,7 +88,7 @@ pub fn run(
 ) -> Result<Row> {
     let report = incremental::fit(set, &Stage::ALL, &Knowledge::default(), settings, watch)?;
     let left_out = match leave_one_out {
-        true => leave_out::each(set, &report, settings, watch)?,
+        true => leave_out::each(set, &report, settings, watch),
         false => Vec::new(),
     };
     let sum = |count: fn(&StageReport) -> usize| report.stages.iter().map(count).sum();
@@ -156,38 +136,6 @@ impl Row {
             Criterion::LeaveOneOut => self.leave_one_out,
             Criterion::Fit => self.fit.relative,
         }
-    }
-}
-
-impl Comparison {
-    /// Ranks rows by the first criterion that holds the same sequences against all of them; failures come last.
-    pub fn new(mut rows: Vec<Row>) -> Self {
-        let fitted = || rows.iter().filter(|row| row.failure.is_none());
-        let spared = |row: &Row| -> Vec<String> {
-            let told = row.left_out.iter().filter(|left| left.relative().is_some());
-            told.map(|left| left.sequence.clone()).collect()
-        };
-        let first = fitted().next().map(spared);
-        let comparable = |criterion: &Criterion| {
-            fitted().all(|row| row.figure(*criterion).is_some())
-                && (*criterion != Criterion::LeaveOneOut || fitted().all(|row| Some(spared(row)) == first))
-        };
-        let criteria = [Criterion::Validation, Criterion::LeaveOneOut];
-        let ranked_by = criteria.into_iter().find(comparable).unwrap_or(Criterion::Fit);
-        let figure = |row: &Row| row.figure(ranked_by).unwrap_or(f64::INFINITY);
-        rows.sort_by(|a, b| figure(a).total_cmp(&figure(b)));
-        Self { ranked_by, rows }
-    }
-
-    /// The text of `compare.json`.
-    pub fn to_json(&self) -> String {
-        // Strings and finite numbers: nothing here can fail to be JSON.
-        serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
-    }
-
-    /// The text of `compare.csv`: a row each, empty where there is nothing to tell.
-    pub fn to_csv(&self) -> String {
-        table::csv(self)
     }
 }
 

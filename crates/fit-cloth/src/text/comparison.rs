@@ -55,9 +55,9 @@ fn in_units(distance: Option<Distance>) -> String {
     format!("{force:>9} {position:>9}")
 }
 
-/// The overall figure, and how many sequences could not be spared.
+/// The overall figure, and how many sequences could not be spared or not be predicted.
 fn left_out(row: &Row) -> String {
-    let lost = row.left_out.iter().filter(|left| !left.lost.is_empty()).count();
+    let lost = row.left_out.iter().filter(|left| left.distance.is_none()).count();
     match lost {
         0 => percent(row.leave_one_out),
         _ => format!("{} ({lost} lost)", percent(row.leave_one_out)),
@@ -103,5 +103,8 @@ fn losses_of(row: &Row) -> Vec<String> {
     let lost = row.left_out.iter().filter(|left| !left.lost.is_empty());
     let lost = lost.map(|left| format!("Without {} nothing shows {}", left.sequence, list(&left.lost)));
     let missing = (!row.missing.is_empty()).then(|| format!("Not observed: {}", list(&row.missing)));
-    missing.into_iter().chain(lost).collect()
+    let failed = row.left_out.iter().filter_map(|left| {
+        Some(format!("Without {}, no prediction: {}", left.sequence, left.failure.as_ref()?))
+    });
+    missing.into_iter().chain(lost).chain(failed).collect()
 }

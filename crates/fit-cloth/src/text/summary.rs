@@ -52,7 +52,9 @@ pub fn missing(report: &FitReport, component: Component) -> Option<String> {
         None => format!("{component} is not observed: no sequence shows it; it has no curve"),
         Some(stage) => {
             let names = list(stage.sequences.iter().map(|sequence| &sequence.name));
-            format!("{component} is not observed: {names} do not tell its scale; it has no curve")
+            format!(
+                "{component} is not observed: the measurements of {names} do not tell its scale; it has no curve"
+            )
         }
     })
 }

@@ -17,6 +17,9 @@ pub struct LeftOut {
     pub sequence: String,
     /// Components that no other sequence shows. Then nothing is predicted.
     pub lost: Vec<Component>,
+    /// Why the others could not be fitted, or this one not be predicted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
     /// How far the prediction of the others is from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<Distance>,
@@ -35,7 +38,7 @@ pub(super) fn each(
     report: &FitReport,
     settings: &Settings,
     watch: &mut Watch<'_>,
-) -> Result<Vec<LeftOut>> {
+) -> Vec<LeftOut> {
     let fitted: Vec<String> = report.sequences().iter().map(|(_, sequence)| sequence.name.clone()).collect();
     let sequences = set.sequences.iter().filter(|sequence| fitted.contains(&sequence.name));
     sequences.map(|sequence| one(set, sequence, report, settings, watch)).collect()
@@ -47,26 +50,44 @@ fn one(
     all: &FitReport,
     settings: &Settings,
     watch: &mut Watch<'_>,
-) -> Result<LeftOut> {
-    let with = |keep: &dyn Fn(&Sequence) -> bool| MeasurementSet {
-        fabric: set.fabric.clone(),
-        sequences: set.sequences.iter().filter(|sequence| keep(sequence)).cloned().collect(),
-    };
-    let [rest, alone] = [with(&|s| s.name != left_out.name), with(&|s| s.name == left_out.name)];
+) -> LeftOut {
+    let rest = with(set, |sequence| sequence.name != left_out.name);
     let known = |component: &Component| all.knowledge.knows(*component);
     let unseen = |component: &Component| !is_shown(&rest, *component, settings);
-    let mut lost: Vec<Component> = Component::ALL.into_iter().filter(known).filter(unseen).collect();
-    let mut distance = None;
-    if lost.is_empty() {
-        let report = incremental::fit(&rest, &Stage::ALL, &Knowledge::default(), settings, watch)?;
-        // A sequence may be of the right kind and still not tell.
-        lost = missing(&report).into_iter().filter(known).collect();
-        if lost.is_empty() {
-            let prediction = predict(&alone, &[left_out.kind], report.curves(), settings)?;
-            distance = Some(Distance::of_prediction(&alone, &prediction));
+    let lost: Vec<Component> = Component::ALL.into_iter().filter(known).filter(unseen).collect();
+    let mut result = LeftOut { sequence: left_out.name.clone(), lost, failure: None, distance: None };
+    if result.lost.is_empty() {
+        match predicted(&rest, &with(set, |sequence| sequence.name == left_out.name), settings, watch) {
+            // A sequence may be of the right kind and still not tell.
+            Ok((_, missing)) if missing.iter().any(known) => {
+                result.lost = missing.into_iter().filter(known).collect();
+            }
+            Ok((distance, _)) => result.distance = Some(distance),
+            Err(error) => result.failure = Some(error.to_string()),
         }
     }
-    Ok(LeftOut { sequence: left_out.name.clone(), lost, distance })
+    result
+}
+
+/// How well a fit of the rest predicts one sequence, and the components that it does not know.
+fn predicted(
+    rest: &MeasurementSet,
+    alone: &MeasurementSet,
+    settings: &Settings,
+    watch: &mut Watch<'_>,
+) -> Result<(Distance, Vec<Component>)> {
+    let report = incremental::fit(rest, &Stage::ALL, &Knowledge::default(), settings, watch)?;
+    let kinds: Vec<Kind> = alone.sequences.iter().map(|sequence| sequence.kind).collect();
+    let prediction = predict(alone, &kinds, report.curves(), settings)?;
+    Ok((Distance::of_prediction(alone, &prediction), missing(&report)))
+}
+
+/// The sequences of a set that are to be kept.
+fn with(set: &MeasurementSet, keep: impl Fn(&Sequence) -> bool) -> MeasurementSet {
+    MeasurementSet {
+        fabric: set.fabric.clone(),
+        sequences: set.sequences.iter().filter(|sequence| keep(sequence)).cloned().collect(),
+    }
 }
 
 /// True if some sequence is of a kind that shows a component, or the one it shares its curve with.
