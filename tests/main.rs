@@ -7,3 +7,4 @@ mod closed_form;
 mod recovery;
 mod rig;
 mod shear;
+mod whole;
