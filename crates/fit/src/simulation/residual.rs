@@ -1,0 +1,202 @@
+//! What a stage compares: residuals, in units of independent noise, and their derivatives.
+
+use super::equilibria::FrameResult;
+use super::{Objective, Simulation};
+use crate::boundary::Whitening;
+use crate::gauss_newton::{Evaluation, Residuals};
+use crate::replica::{Replica, ReplicaFrame};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::equilibrium::{Solver, Status};
+use cloth_sim::material::Component;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+use std::convert::Infallible;
+
+impl Simulation<'_> {
+    /// Indices of residuals that follow one another: one force component of one clip through a sequence, or one coordinate
+    /// of one node.
+    pub fn tracks(&self) -> Vec<Vec<usize>> {
+        let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
+        let mut index = 0;
+        for &(replica, frame) in &self.frames {
+            let frame = &self.replicas[replica].frames[frame];
+            let forces = &frame.forces;
+            match self.task.objective {
+                Objective::Forces => {
+                    for (place, force) in forces.iter().enumerate() {
+                        let first = forces.iter().position(|other| other.clip == force.clip).unwrap_or(0);
+                        tracks.entry((replica, force.clip, place - first)).or_default().push(index);
+                        index += 1;
+                    }
+                }
+                Objective::Positions => {
+                    for (_, coordinate) in seen_unknowns(&self.replicas[replica], frame) {
+                        tracks.entry((replica, coordinate / 3, coordinate % 3)).or_default().push(index);
+                        index += 1;
+                    }
+                }
+            }
+        }
+        tracks.into_values().collect()
+    }
+
+    /// The derivative of everything that is compared with respect to the control values of other curves, in the order of
+    /// their groups; rows and units as those of an evaluation.
+    ///
+    /// * `groups` — components that share a curve, a group each
+    pub fn sensitivity_to(&self, groups: &[Vec<Component>]) -> DMatrix<f64> {
+        let curves = self.curves(&self.curve);
+        let results = self.solve_frames(&curves, groups, None);
+        let columns: usize =
+            groups.iter().map(|group| curves.get(group[0]).map_or(0, StiffnessCurve::len)).sum();
+        let mut values = Vec::new();
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let replica = &self.replicas[replica];
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, columns);
+            values.extend(rows.columns(1, columns).transpose().iter());
+        }
+        DMatrix::from_row_slice(values.len() / columns.max(1), columns, &values)
+    }
+
+    pub(super) fn noise(&self, replica: &Replica) -> Option<f64> {
+        match self.task.objective {
+            Objective::Forces => replica.force_noise,
+            Objective::Positions => replica.position_noise,
+        }
+    }
+
+    /// What the residuals of a replica are divided by.
+    pub(super) fn scale(&self, replica: &Replica) -> f64 {
+        self.noise(replica).filter(|_| self.noise_is_known()).unwrap_or(1.0)
+    }
+
+    /// What each measurement of a frame is divided by.
+    pub(super) fn scales<'s>(
+        &'s self,
+        replica: &'s Replica,
+        frame: &'s ReplicaFrame,
+    ) -> impl Iterator<Item = f64> + 's {
+        let scale = self.scale(replica);
+        let forces = frame.forces.iter().map(|_| 1.0);
+        let positions = seen_unknowns(replica, frame).map(|(_, coordinate)| replica.spread[coordinate / 3]);
+        let by_forces = self.task.objective == Objective::Forces;
+        forces
+            .filter(move |_| by_forces)
+            .chain(positions.filter(move |_| !by_forces))
+            .map(move |share| share * scale)
+    }
+
+    pub(super) fn typical_residual(&self) -> f64 {
+        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
+        let mut sizes: Vec<f64> = Vec::new();
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let replica = &self.replicas[replica];
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, 0);
+            sizes.extend(rows.iter().map(|residual| residual.abs()));
+        }
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).map_or(0.0, |median| 1.4826 * median)
+    }
+
+    /// A frame's residuals, and in further columns their derivatives, all in units of independent noise.
+    fn residual_rows(
+        &self,
+        replica: &Replica,
+        frame: &ReplicaFrame,
+        result: &FrameResult,
+        points: usize,
+    ) -> DMatrix<f64> {
+        let scales: Vec<f64> = self.scales(replica, frame).collect();
+        let mut rows = DMatrix::zeros(scales.len(), points + 1);
+        let measured = measured(replica, frame, self.task.objective);
+        for (i, ((measured, simulated), scale)) in measured.zip(&result.simulated).zip(&scales).enumerate() {
+            rows[(i, 0)] = (measured - simulated) / scale;
+            (0..points).for_each(|k| rows[(i, k + 1)] = result.derivatives[i * points + k] / scale);
+        }
+        if let Some(whitening) = &result.state.whitening {
+            whitening.apply(&mut rows);
+        }
+        rows
+    }
+}
+
+/// How the places of the last held lines enter the positions that are compared.
+pub(super) fn whitening(solver: &mut Solver<'_>, replica: &Replica, frame: &ReplicaFrame) -> Whitening {
+    let unknowns = replica.cloth(frame).unknowns();
+    let mut modes: Vec<f64> = solver.border().iter().map(|k| -k).collect();
+    solver.solve_linear(&mut modes);
+    let seen: Vec<(usize, usize)> = seen_unknowns(replica, frame).collect();
+    let columns = modes.len() / unknowns.max(1);
+    Whitening::new(DMatrix::from_fn(seen.len(), columns, |i, j| {
+        let (unknown, coordinate) = seen[i];
+        modes[j * unknowns + unknown] * replica.held_spread / replica.spread[coordinate / 3]
+    }))
+}
+
+impl Residuals for Simulation<'_> {
+    type Error = Infallible;
+
+    /// Residuals of all measurements, frame by frame, in units of the noise where that is known, else N or m.
+    fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
+        let failed = |reason: String| Ok(Evaluation::Failed { reason });
+        let curve = match self.curve.with_stiffnesses(point.iter().copied().collect()) {
+            Ok(curve) => curve,
+            Err(error) => return failed(error.to_string()),
+        };
+        let change = point - DVector::from_column_slice(self.curve.stiffnesses());
+        let groups = [self.task.fitted.clone()];
+        let results = self.solve_frames(&self.curves(&curve), &groups, Some(&change));
+        if let Some(index) = results.iter().position(|result| result.status != Status::Converged) {
+            let (replica, frame) = self.frames[index];
+            let replica = &self.replicas[replica];
+            return failed(format!(
+                "no equilibrium of {} frame {}: {}",
+                replica.name, replica.frames[frame].index, results[index].status
+            ));
+        }
+        let (mut residual, mut derivatives) = (Vec::new(), Vec::new());
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let replica = &self.replicas[replica];
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, point.len());
+            for row in rows.row_iter() {
+                let (value, slope) = self.task.robust.map_or((row[0], 1.0), |robust| robust.bend(row[0]));
+                residual.push(value);
+                derivatives.extend(row.iter().skip(1).map(|d| d * slope));
+            }
+        }
+        let rows = residual.len();
+        self.states = results.into_iter().map(|result| result.state).collect();
+        self.curve = curve;
+        Ok(Evaluation::Values {
+            residual: DVector::from_vec(residual),
+            jacobian: Some(DMatrix::from_row_slice(rows, point.len(), &derivatives)),
+        })
+    }
+}
+
+/// The free coordinates of a frame that were seen: their unknown, and their index.
+pub(super) fn seen_unknowns<'r>(
+    replica: &'r Replica,
+    frame: &'r ReplicaFrame,
+) -> impl Iterator<Item = (usize, usize)> + 'r {
+    let free = replica.cloth(frame).free_coordinates();
+    frame.observed.iter().flat_map(move |observed| {
+        let seen = free.iter().filter(|(coordinate, _)| observed[*coordinate].is_finite());
+        seen.map(|&(coordinate, unknown)| (unknown, coordinate))
+    })
+}
+
+/// What was measured of what is compared.
+fn measured<'r>(
+    replica: &'r Replica,
+    frame: &'r ReplicaFrame,
+    objective: Objective,
+) -> Box<dyn Iterator<Item = f64> + 'r> {
+    match objective {
+        Objective::Forces => Box::new(frame.forces.iter().map(|component| component.force)),
+        Objective::Positions => Box::new(
+            seen_unknowns(replica, frame)
+                .filter_map(|(_, coordinate)| frame.observed.as_ref().map(|observed| observed[coordinate])),
+        ),
+    }
+}
