@@ -1,0 +1,137 @@
+//! Which unknown every coordinate is, and where every entry of every element's Hessian goes.
+
+use super::HELD;
+use crate::element::{Element, Pass, lower_entries};
+use crate::linear::{Pattern, order};
+use std::collections::BTreeSet;
+
+/// Unknowns in an order of the nodes that keeps the factor sparse, the coordinates of a node together.
+pub(super) fn number(moves: &[bool], neighbours: &[BTreeSet<usize>], coordinates: usize) -> Vec<usize> {
+    let free: Vec<usize> = (0..moves.len()).filter(|&node| moves[node]).collect();
+    let mut place = vec![HELD; moves.len()];
+    free.iter().enumerate().for_each(|(index, &node)| place[node] = index);
+    let graph: Vec<Vec<usize>> = free
+        .iter()
+        .map(|&node| {
+            neighbours[node].iter().map(|&other| place[other]).filter(|&other| other != HELD).collect()
+        })
+        .collect();
+    order(&graph)
+        .into_iter()
+        .flat_map(|index| (0..coordinates).map(move |i| (index, i)))
+        .map(|(index, i)| 3 * free[index] + i)
+        .collect()
+}
+
+/// Row indices of the lower triangle, column by column.
+pub(super) fn columns(
+    unknowns: &[usize],
+    unknown_of: &[usize],
+    neighbours: &[BTreeSet<usize>],
+) -> Vec<Vec<usize>> {
+    unknowns
+        .iter()
+        .enumerate()
+        .map(|(column, &coordinate)| {
+            let node = coordinate / 3;
+            let around = neighbours[node].iter().copied().chain([node]);
+            let mut rows: Vec<usize> = around
+                .flat_map(|other| (0..3).map(move |i| 3 * other + i))
+                .map(|coordinate| unknown_of[coordinate])
+                .filter(|&row| row != HELD && row >= column)
+                .collect();
+            rows.sort_unstable();
+            rows
+        })
+        .collect()
+}
+
+/// The node whose motion each node shares: itself, or the first of its group.
+pub(super) fn leaders(nodes: usize, tied: &[Vec<usize>]) -> Vec<usize> {
+    let mut leader: Vec<usize> = (0..nodes).collect();
+    for group in tied {
+        group.iter().for_each(|&node| leader[node] = group[0]);
+    }
+    leader
+}
+
+/// Which nodes share an element.
+pub(super) struct GraphPass {
+    pub(super) neighbours: Vec<BTreeSet<usize>>,
+}
+
+impl GraphPass {
+    /// The same between groups that move alike.
+    pub(super) fn led(self, leader: &[usize]) -> Vec<BTreeSet<usize>> {
+        let mut led = vec![BTreeSet::new(); leader.len()];
+        for (node, neighbours) in self.neighbours.into_iter().enumerate() {
+            let own = leader[node];
+            led[own].extend(neighbours.into_iter().map(|other| leader[other]).filter(|&other| other != own));
+        }
+        led
+    }
+}
+
+impl Pass for GraphPass {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        _part: usize,
+        elements: &[E],
+    ) {
+        for element in elements {
+            let nodes = element.nodes();
+            for from in nodes {
+                self.neighbours[from].extend(nodes.iter().filter(|&&to| to != from));
+            }
+        }
+    }
+}
+
+/// Where every entry of every element's Hessian goes.
+pub(super) struct ScatterPass<'a> {
+    pub(super) unknown_of: &'a [usize],
+    pub(super) clip_of: &'a [Option<usize>],
+    pub(super) pattern: &'a Pattern,
+    pub(super) clips: usize,
+    pub(super) targets: [Vec<u32>; 2],
+}
+
+impl ScatterPass<'_> {
+    fn target(&self, [first, second]: [(usize, usize); 2]) -> usize {
+        let unknown = |(node, i): (usize, usize)| self.unknown_of[3 * node + i];
+        let border = |(node, i): (usize, usize), column: usize| {
+            self.clip_of[node]
+                .map(|clip| self.pattern.entries() + (3 * clip + i) * self.pattern.size() + column)
+        };
+        let nowhere = self.pattern.entries() + 3 * self.clips * self.pattern.size();
+        let place = match (unknown(first), unknown(second)) {
+            (HELD, HELD) => None,
+            (HELD, column) => border(first, column),
+            (column, HELD) => border(second, column),
+            (a, b) if a == b && first != second => {
+                self.pattern.position(a, a).map(|diagonal| nowhere + 1 + diagonal)
+            }
+            (a, b) => self.pattern.position(a.max(b), a.min(b)),
+        };
+        // What nobody reads goes to the last place.
+        place.unwrap_or(nowhere)
+    }
+}
+
+impl Pass for ScatterPass<'_> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        part: usize,
+        elements: &[E],
+    ) {
+        let entries = lower_entries(K, N);
+        let mut targets = Vec::with_capacity(entries.len() * elements.len());
+        for element in elements {
+            let nodes = element.nodes();
+            targets.extend(
+                entries.iter().map(|entry| self.target(entry.map(|(node, i)| (nodes[node], i))) as u32),
+            );
+        }
+        self.targets[part] = targets;
+    }
+}
