@@ -7,13 +7,19 @@
 //!
 //! ```text
 //! energy        E(x) = Σₑ Aₑ Σ_c W_c(ε_c) − Σₐ mₐ g·xₐ        W_c(ε) = ∫₀^ε σ_c,   σ_c(ε) = k_c(ε) ε
-//! equilibrium   ∂E/∂x = 0 at every free node; held nodes stay at their prescribed places
+//! equilibrium   ∂E/∂x = 0 at every free node; held nodes stay at their prescribed places, tied ones move alike
 //! clip force    F = Σ ∂E/∂xₐ over the nodes a that the clip holds
 //! sensitivity   ∂x/∂k = −K⁻¹ ∂²E/∂x∂k,   K = ∂²E/∂x²
 //! ```
 //!
 //! k_c is a Hermite spline through control points, the stiffnesses that a fit finds; energy, stress and forces are linear
 //! in them.
+//!
+//! An equilibrium that is balanced but not stable is left for a lower one beside it, and flagged
+//! ([`Equilibrium::escaped`](equilibrium::Equilibrium::escaped)): near there another shape is as good. Where clips have moved
+//! far, [`Solver::drive`](equilibrium::Solver::drive) takes the sheet along in as many load steps as that needs. Nodes may be
+//! tied ([`Problem::tied`](cloth::Problem::tied)): they then share their unknowns, as the lines of a sheet do that bends as a
+//! cylinder.
 //!
 //! | Type | Role |
 //! |---|---|
