@@ -13,7 +13,7 @@ use crate::simulation::{Objective, Simulation, Task};
 use crate::summary::{curve_report, sequence_reports};
 use crate::uncertainty::{Covariance, Scatter};
 use cloth_sim::curve::StiffnessCurve;
-use cloth_sim::material::Component;
+use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 use std::time::Instant;
@@ -82,32 +82,12 @@ pub fn fit(
         return Ok(None);
     }
     let Start { stiffness, largest, known, assumed } = start(plan, &replicas, knowledge, settings)?;
-    let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
     let before = knowledge.curves().get(plan.fitted[0]).filter(|_| plan.pass > 1).cloned();
-    let first = match &before {
-        Some(curve) => curve.clone(),
-        None => StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?,
-    };
-    let task = Task {
-        fitted: plan.fitted.clone(),
-        objective: plan.objective,
-        known,
-        settings: settings.equilibrium,
-        robust: None,
-    };
-    let mut simulation = Simulation::new(&replicas, task, first, Arc::clone(&watch.meter));
+    let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
+    let constant = StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?;
+    let first = before.clone().unwrap_or(constant);
+    let mut simulation = simulate(plan, &replicas, known, first, settings, watch)?;
     let dropped = simulation.dropped().len();
-    if simulation.settled().next().is_none() {
-        let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
-        return Err(unfit(
-            &replicas,
-            format!("no frame with an equilibrium ({status})"),
-            "clips that stretch the specimen evenly, on cells that are not too long",
-        ));
-    }
-    if let Some(limit) = settings.robust {
-        simulation.make_robust(limit);
-    }
     let growth = match before {
         Some(_) => refit(&mut simulation, settings, 1e-3 * largest, watch),
         None => grow(&mut simulation, settings, 1e-3 * largest, watch),
@@ -122,31 +102,21 @@ pub fn fit(
     simulation.set_curve(growth.curve.clone());
     let forces = simulation.settle();
     let complete = simulation.dropped().len() == dropped;
-    let Outcome { residual, jacobian, status, .. } = &growth.outcome;
-    let noise = simulation.noise_is_known().then_some(1.0);
-    let scatter = Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), &tracks, noise);
-    let observed = is_observed(plan, &growth, &scatter, knowledge);
-    let mut covariance = Covariance::new(jacobian, &scatter);
-    let converged = status.converged() && complete;
     let others = knowledge.without(&plan.fitted);
-    let groups = others.groups(&plan.components);
-    let mut gain = DMatrix::zeros(growth.curve.len(), 0);
-    if complete && !groups.is_empty() {
-        gain = covariance.gain(jacobian, &simulation.sensitivity_to(&groups));
-        covariance.carry(&gain, &others.covariance(&plan.components));
-    }
-    if observed {
-        knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, &plan.components, &gain);
-    } else {
-        // What a first pass made of it was no knowledge either.
-        *knowledge = others.clone();
+    let judgement = judge(plan, &simulation, &growth, &tracks, &others, complete);
+    let Judgement { scatter, covariance, gain, observed } = &judgement;
+    // What a first pass made of a curve that is not observed was no knowledge either.
+    *knowledge = others.clone();
+    if *observed {
+        knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, &plan.components, gain);
     }
     let basis = Basis {
-        carried: groups.into_iter().flatten().collect(),
+        carried: others.groups(&plan.components).into_iter().flatten().collect(),
         known: others.curves().components().filter(|c| plan.components.contains(c)).collect(),
         assumed,
     };
     let (levels, stopped) = (growth.levels.clone(), growth.stopped.clone());
+    let converged = growth.outcome.status.converged() && complete;
     Ok(Some(StageReport {
         components: plan.fitted.clone(),
         pass: plan.pass,
@@ -154,7 +124,7 @@ pub fn fit(
         variant: settings.variant,
         objective: plan.objective,
         basis,
-        curve: curve_report(&simulation, growth, &covariance, observed),
+        curve: curve_report(&simulation, growth, covariance, *observed),
         scatter: scatter.times(simulation.unit()),
         sequences: sequence_reports(&simulation, &forces),
         dropped: simulation.dropped().to_vec(),
@@ -164,6 +134,73 @@ pub fn fit(
         counters: watch.meter.read().since(&spent_before),
         seconds: clock.elapsed().as_secs_f64(),
     }))
+}
+
+/// All frames in equilibrium under the first curve.
+fn simulate<'r>(
+    plan: &Plan,
+    replicas: &'r [Replica],
+    known: Curves,
+    first: StiffnessCurve,
+    settings: &Settings,
+    watch: &Watch<'_>,
+) -> Result<Simulation<'r>> {
+    let task = Task {
+        fitted: plan.fitted.clone(),
+        objective: plan.objective,
+        known,
+        settings: settings.equilibrium,
+        robust: None,
+    };
+    let mut simulation = Simulation::new(replicas, task, first, Arc::clone(&watch.meter));
+    if simulation.settled().next().is_none() {
+        let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
+        return Err(unfit(
+            replicas,
+            format!("no frame with an equilibrium ({status})"),
+            match plan.objective {
+                Objective::Forces => "clips that deform the specimen evenly, on cells that are not too long",
+                Objective::Positions => "a sheet that hangs off the table under its weight",
+            },
+        ));
+    }
+    if let Some(limit) = settings.robust {
+        simulation.make_robust(limit);
+    }
+    Ok(simulation)
+}
+
+/// How sure a stage is of its curve.
+struct Judgement {
+    scatter: Scatter,
+    covariance: Covariance,
+    /// What errors of the known curves do to this one.
+    gain: DMatrix<f64>,
+    observed: bool,
+}
+
+/// * `others` — what is known of the other curves
+/// * `complete` — no frame was lost on the way, so that the fit's Jacobian and the simulation have the same rows
+fn judge(
+    plan: &Plan,
+    simulation: &Simulation<'_>,
+    growth: &Growth,
+    tracks: &[Vec<usize>],
+    others: &Knowledge,
+    complete: bool,
+) -> Judgement {
+    let Outcome { residual, jacobian, .. } = &growth.outcome;
+    let noise = simulation.noise_is_known().then_some(1.0);
+    let scatter = Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), tracks, noise);
+    let observed = is_observed(plan, growth, &scatter, others);
+    let mut covariance = Covariance::new(jacobian, &scatter);
+    let groups = others.groups(&plan.components);
+    let mut gain = DMatrix::zeros(growth.curve.len(), 0);
+    if complete && !groups.is_empty() {
+        gain = covariance.gain(jacobian, &simulation.sensitivity_to(&groups));
+        covariance.carry(&gain, &others.covariance(&plan.components));
+    }
+    Judgement { scatter, covariance, gain, observed }
 }
 
 /// True if the measurements tell the curve's scale: its 95 % band is less than the curve itself, or, where the curve is
