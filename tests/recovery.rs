@@ -1,7 +1,7 @@
 //! Known curves, measured by the virtual rig, fitted, compared.
 //!
 //! ```text
-//! rig: StVK on 31×31 nodes, '\'         fit: 13×13 nodes, '/'
+//! rig: StVK on 31×31 nodes              fit: 13×13 nodes
 //!   ┌──────────────┐
 //! ◀─│ bar      bar │─▶   weft and warp, load and release; shapes on a mesh of their own
 //!   └──────────────┘

@@ -1,11 +1,10 @@
 //! The virtual measurement rig: a known cloth in, a measurement set out.
 //!
-//! The cloth is simulated on a finer mesh with other diagonals than the fit's, so that a fit is not tested on
-//! its own discretisation; what is "measured" is sampled from it on a third mesh, and the instruments add
-//! their noise.
+//! The cloth is simulated on a finer mesh than the fit's, so that a fit is not tested on its own
+//! discretisation; what is "measured" is sampled from it on another mesh, and the instruments add their noise.
 //!
 //! ```text
-//! fabric.toml ──▶ simulation 61×61, '\' ──▶ vertices of the measured mesh  + 0.075 mm ──▶ positions.npy
+//! fabric.toml ──▶ simulation 61×61      ──▶ vertices of the measured mesh  + 0.075 mm ──▶ positions.npy
 //!                                      └──▶ forces of the cords on the clips + 3 mN    ──▶ forces.csv
 //! ```
 //!
@@ -68,7 +67,7 @@ pub struct Rig {
     pub sequences: Vec<Kind>,
     /// Columns and rows of the simulation; default 61×61.
     pub nodes: [usize; 2],
-    /// How the simulation's cells are split; default alternating: a fit's own default, but finer. Split all one way, hinges are up
+    /// How the simulation's cells are split; default alternating, as in a fit, but finer. Split all one way, hinges are up
     /// to three times as stiff along one diagonal as along the other, and no sheet is.
     pub diagonals: Diagonals,
     /// Columns and rows of the measured mesh; default 100×100.

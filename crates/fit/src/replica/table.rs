@@ -7,8 +7,8 @@
 //!                 edge         ●     the last held segment lies on the free cloth and carries the measured slope
 //! ```
 //!
-//! To hold only what lies on the table would make the fitted rigidity 33–150 % too large: the cloth bends at the edge
-//! itself, which falls between two lines. Each line is seen by many nodes: their middle is what is held.
+//! To hold only what lies on the table would make the fitted rigidity far too large: the cloth bends at the edge itself,
+//! which falls between two lines. Each line is seen by many nodes: their middle is what is held.
 
 use super::bad_geometry;
 use crate::error::Result;
@@ -133,7 +133,7 @@ impl Lines {
     /// All lines but the first. Each moves as a whole, so that the sheet bends as a cylinder.
     ///
     /// Hinges of a triangulated sheet tie bending to twist: split all one way, a sheet hung off a table twists (by 5 mm at
-    /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it 20 % softer. A cylinder knows
+    /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it a fifth softer. A cylinder knows
     /// neither: its flexural rigidity is 3 × the hinges' stiffness, as the curve files say.
     pub(super) fn beyond(&self, lines: usize) -> &[Vec<usize>] {
         &self.nodes[lines..]
