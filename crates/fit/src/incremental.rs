@@ -59,8 +59,21 @@ pub struct FitReport {
     pub variant: Variant,
     /// Every stage in the order it ran; of a component that was fitted twice, both.
     pub stages: Vec<StageReport>,
+    /// Stages that failed; the others stand.
+    pub failures: Vec<Failure>,
     /// What is known now: what was given, and what was observed.
     pub knowledge: Knowledge,
+}
+
+/// A stage that came to nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failure {
+    /// What it was to fit.
+    pub components: Vec<Component>,
+    /// First or second pass over them; where a second failed the first still counts.
+    pub pass: usize,
+    /// Why.
+    pub reason: String,
 }
 
 impl FitReport {
@@ -72,15 +85,16 @@ impl FitReport {
     /// The stages that count: of two passes over a component the last.
     pub fn last_stages(&self) -> impl Iterator<Item = &StageReport> {
         let last = |stage: &&StageReport| {
-            stage.components.first().and_then(|&component| self.stage(component)).is_some_and(|s| s == *stage)
+            let of_component = stage.components.first().and_then(|&component| self.stage(component));
+            of_component.is_some_and(|last| std::ptr::eq(last, *stage))
         };
         self.stages.iter().filter(last)
     }
 
-    /// How each sequence was met in the end: with the last curve that it takes part in fitting.
+    /// How each sequence was met in the end, by the stage that is about it.
     pub fn sequences(&self) -> Vec<(&StageReport, &SequenceReport)> {
         let mut last: Vec<(&StageReport, &SequenceReport)> = Vec::new();
-        // A sequence belongs to the stage that is about it; the diagonal's stage only borrows those of weft and warp.
+        // The diagonal's stage, which comes later, only borrows those of weft and warp.
         for stage in self.last_stages() {
             for sequence in &stage.sequences {
                 if !last.iter().any(|(_, known)| known.name == sequence.name) {
@@ -98,14 +112,14 @@ impl FitReport {
 
     /// Every stage came to its minimum.
     pub fn converged(&self) -> bool {
-        self.last_stages().all(|stage| stage.converged)
+        self.failures.is_empty() && self.last_stages().all(|stage| stage.converged)
     }
 }
 
 /// Fits the wanted stages of a set in order, from what is known; curves that are known are not fitted.
 ///
 /// # Errors
-/// As [`stage::fit`].
+/// As [`stage::fit`], where no stage comes to anything; if another does, what failed stands in the report.
 pub fn fit(
     set: &MeasurementSet,
     wanted: &[Stage],
@@ -117,8 +131,10 @@ pub fn fit(
         model: settings.model,
         variant: settings.variant,
         stages: Vec::new(),
+        failures: Vec::new(),
         knowledge: known.clone(),
     };
+    let mut first_error = None;
     for plan in plans(wanted, settings.variant) {
         if plan.fitted.iter().all(|&component| known.knows(component)) {
             continue;
@@ -127,9 +143,19 @@ pub fn fit(
         if plan.pass > 1 && !report.knowledge.knows(plan.fitted[0]) {
             continue;
         }
-        report.stages.extend(stage::fit(set, &plan, &mut report.knowledge, settings, watch)?);
+        match stage::fit(set, &plan, &mut report.knowledge, settings, watch) {
+            Ok(stage) => report.stages.extend(stage),
+            Err(error) => {
+                let (components, pass, reason) = (plan.fitted, plan.pass, error.to_string());
+                report.failures.push(Failure { components, pass, reason });
+                first_error.get_or_insert(error);
+            }
+        }
     }
-    Ok(report)
+    match first_error {
+        Some(error) if report.stages.is_empty() => Err(error),
+        _ => Ok(report),
+    }
 }
 
 /// What is fitted, in order.

@@ -52,7 +52,7 @@ pub fn predict(
     };
     let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
     let meter = Arc::<Meter>::default();
-    let mut simulation = Simulation::new(&replicas, task, none, Arc::clone(&meter));
+    let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(&meter));
     simulation.follow();
     let forces = simulation.settle();
     Ok(Prediction {

@@ -105,6 +105,8 @@ pub struct ReplicaFrame {
 pub struct ForceComponent {
     /// Index of the clip.
     pub clip: usize,
+    /// Which of the clip's components; its direction may turn with the clip.
+    pub number: usize,
     /// Unit direction.
     pub direction: Vector3<f64>,
     /// The simulated component is Σ force of a group of held nodes · this vector.

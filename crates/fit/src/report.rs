@@ -101,6 +101,8 @@ pub struct ForceRow {
     pub phase: Phase,
     /// Index of the clip.
     pub clip: usize,
+    /// Which of the clip's components; its direction may turn with the clip.
+    pub number: usize,
     /// Unit direction of the component, in the specimen's own frame.
     pub direction: Vector3<f64>,
     /// The same in the world's axes.

@@ -97,6 +97,13 @@ impl<'a> Simulation<'a> {
     ///
     /// * `curve` — the curve to start from; its strains are the control points that are fitted
     pub fn new(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
+        let mut simulation = Self::unsettled(replicas, task, curve, meter);
+        simulation.settle();
+        simulation
+    }
+
+    /// All frames where they would start, none in equilibrium yet.
+    pub fn unsettled(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
         let frames: Vec<(usize, usize)> = replicas
             .iter()
             .enumerate()
@@ -121,13 +128,13 @@ impl<'a> Simulation<'a> {
                 start_state(&replicas[replica], &replicas[replica].frames[frame], &curves)
             })
             .collect();
-        simulation.settle();
         simulation
     }
 
     /// Lets residuals above so many times the noise count less; where the noise is not known, above so many times the
     /// typical residual under the curve as it is (its median, as a standard deviation).
     pub fn make_robust(&mut self, limit: f64) {
+        self.task.robust = None;
         let unit = if self.noise_is_known() { 1.0 } else { self.typical_residual() };
         self.task.robust = (unit > 0.0).then_some(Robust { limit: limit * unit });
     }

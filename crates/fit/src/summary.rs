@@ -144,6 +144,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 frame: frame.index,
                 phase: frame.phase,
                 clip: component.clip,
+                number: component.number,
                 direction: component.direction,
                 world: replica.specimen.frame.rotation.inverse() * component.direction,
                 extension: frame.extension,
@@ -194,12 +195,12 @@ fn outliers(rows: &[ForceRow]) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut first: Vec<&ForceRow> = Vec::new();
     for row in rows {
-        if first.iter().any(|seen| seen.clip == row.clip && seen.direction == row.direction) {
+        if first.iter().any(|seen| seen.clip == row.clip && seen.number == row.number) {
             continue;
         }
         first.push(row);
         let track: Vec<&ForceRow> =
-            rows.iter().filter(|other| other.clip == row.clip && other.direction == row.direction).collect();
+            rows.iter().filter(|other| other.clip == row.clip && other.number == row.number).collect();
         let residual: Vec<f64> = track.iter().map(|row| row.measured - row.simulated).collect();
         let apart: Vec<f64> = (0..residual.len())
             .map(|i| {

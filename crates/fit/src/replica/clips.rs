@@ -157,8 +157,9 @@ impl Grip {
                 (None, _) if planar => vec![Vector3::x(), Vector3::y()],
                 (None, _) => vec![Vector3::x(), Vector3::y(), Vector3::z()],
             };
-            components.extend(directions.into_iter().map(|direction| ForceComponent {
+            components.extend(directions.into_iter().enumerate().map(|(number, direction)| ForceComponent {
                 clip,
+                number,
                 direction,
                 parts: self.parts(clip, &direction, &axes),
                 force: balanced.dot(&direction),

@@ -20,6 +20,9 @@ use nalgebra::Vector3;
 /// Lines past the edge that are held.
 const PAST_EDGE: usize = 2;
 
+/// A sheet must reach so many times farther out than it does across: its sides then are along the edge within about 4°.
+const STRAIGHT: f64 = 12.0;
+
 /// Fewer free lines than this say nothing of bending.
 const FEWEST_FREE: usize = 3;
 
@@ -76,7 +79,7 @@ impl Lines {
             }
         }
         let [along, across] = if f64::abs(reach[0]) > f64::abs(reach[1]) { [0, 1] } else { [1, 0] };
-        if !(f64::abs(reach[along]) > 4.0 * f64::abs(reach[across])) {
+        if !(f64::abs(reach[along]) > STRAIGHT * f64::abs(reach[across])) {
             return Err(bad_geometry(
                 sequence,
                 "a sheet whose sides are not along the table's edge, or no shape at all".into(),
@@ -90,28 +93,34 @@ impl Lines {
         Ok(Self { nodes, edge, outward })
     }
 
-    /// What one observed shape says; `None` where too little hangs over, or a line was hardly seen.
+    /// What one observed shape says; `None` where too little hangs over, or a line that matters was hardly seen. On the
+    /// table, where a line may well be hidden, the next one seen tells its place.
     pub(super) fn overhang(&self, specimen: &Specimen, shape: &[f64]) -> Option<Overhang> {
-        let straight: Vec<Line> =
-            self.nodes.iter().map(|line| Line::through(specimen, line, shape)).collect::<Option<_>>()?;
+        let seen: Vec<Option<Line>> =
+            self.nodes.iter().map(|line| Line::through(specimen, line, shape)).collect();
         let past = |line: &Line| (line.centre - self.edge).dot(&self.outward);
-        // The table ends at the last line on it; what hangs may swing back under the edge.
-        let on_table = straight.iter().take_while(|line| past(line) <= 0.0).count();
+        // The table ends before the first line past its edge; what hangs may swing back under it.
+        let on_table = seen.iter().position(|line| line.as_ref().is_some_and(|line| past(line) > 0.0))?;
         let held = on_table + PAST_EDGE;
         if on_table == 0 || held + FEWEST_FREE > self.nodes.len() {
             return None;
         }
+        let hanging: Vec<&Line> = seen[on_table - 1..].iter().map(Option::as_ref).collect::<Option<_>>()?;
         // All lines are parallel: tilts of their own, which noise gives them, would strain a sheet that bends as a cylinder.
-        let along = straight.iter().map(|line| line.slope).sum::<Vector3<f64>>().normalize();
+        let along = seen.iter().flatten().map(|line| line.slope).sum::<Vector3<f64>>().normalize();
         let mut smooth = vec![0.0; shape.len()];
-        for (line, nodes) in straight.iter().zip(&self.nodes) {
+        for (line, nodes) in self.nodes.iter().enumerate() {
+            let (later, nearest) =
+                seen.iter().enumerate().skip(line).find_map(|(later, l)| Some((later, l.as_ref()?)))?;
+            let [from, to] = [line, later].map(|line| specimen.mesh.positions[self.nodes[line][0]]);
+            let back = self.outward * (to - from).norm();
             for &node in nodes {
-                let place = line.at(specimen.mesh.positions[node], &along);
+                let place = nearest.at(specimen.mesh.positions[node] + (to - from), &along) - back;
                 smooth[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
             }
         }
-        let lengths = straight.windows(2).skip(on_table).map(|pair| (pair[1].centre - pair[0].centre).norm());
-        let length = lengths.sum::<f64>() + past(&straight[on_table]);
+        let lengths = hanging[1..].windows(2).map(|pair| (pair[1].centre - pair[0].centre).norm());
+        let length = lengths.sum::<f64>() + past(hanging[1]);
         Some(Overhang { held, length, smooth })
     }
 
@@ -130,7 +139,7 @@ impl Lines {
         square.sqrt() / line.len() as f64
     }
 
-    /// All lines but the first. Each moves as a whole, so that the sheet bends as a cylinder.
+    /// All lines but the first few, which are held. Each moves as a whole, so that the sheet bends as a cylinder.
     ///
     /// Hinges of a triangulated sheet tie bending to twist: split all one way, a sheet hung off a table twists (by 5 mm at
     /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it a fifth softer. A cylinder knows

@@ -155,7 +155,8 @@ impl<'a> Simulation<'a> {
     }
 
     /// Follows every sheet between clips that moves in space from its rest through its frames, each from the equilibrium
-    /// before. A frame that so comes to another shape than from its measured one has several equilibria, and is flagged.
+    /// before. A frame that so comes to another shape than from its measured one has several equilibria, and is flagged;
+    /// one that cannot be followed starts from its measured shape.
     pub fn follow(&mut self) {
         let curves = self.curves(&self.curve);
         let followed: Vec<Vec<(usize, State)>> =
@@ -175,17 +176,21 @@ impl<'a> Simulation<'a> {
         let mut x = replica.rest();
         let mut states = Vec::new();
         for (place, &(_, frame)) in self.frames.iter().enumerate().filter(|(_, (of, _))| *of == index) {
-            let found = solver.drive(curves, &mut x, &replica.frames[frame].start, &self.task.settings);
-            self.meter.add(&found);
-            let state = &self.states[place];
-            if !found.converged() {
-                // From where the measured shape led.
-                x.copy_from_slice(&state.x);
+            let settings = &self.task.settings;
+            let mut measured = self.states[place].clone();
+            let seen = solver.solve(curves, &mut measured.x, settings);
+            measured.escaped |= seen.escaped;
+            let along = solver.drive(curves, &mut x, &replica.frames[frame].start, settings);
+            [seen, along].iter().for_each(|found| self.meter.add(found));
+            if !along.converged() {
+                x.copy_from_slice(&measured.x);
+                states.push((place, measured));
                 continue;
             }
-            let apart = x.iter().zip(&state.x).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            let apart = x.iter().zip(&measured.x).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
             let [dx, dy] = replica.specimen.grid.cell();
-            let escaped = state.escaped || apart > SAME_SHAPE * dx.min(dy);
+            let other = seen.converged() && apart > SAME_SHAPE * dx.min(dy);
+            let escaped = measured.escaped || along.escaped || other;
             states.push((place, State { x: x.clone(), escaped, ..State::default() }));
         }
         states
@@ -261,11 +266,13 @@ fn force_derivatives(
 pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
     let cloth = replica.cloth(frame);
     let own = frame.start.clone();
-    let Some(observed) = frame.observed.as_ref().filter(|x| x.iter().all(|c| c.is_finite())) else {
+    let Some(observed) = &frame.observed else {
         return State { x: own, ..State::default() };
     };
     let mut measured = own.clone();
-    cloth.free_coordinates().iter().for_each(|&(c, _)| measured[c] = observed[c]);
+    for &(coordinate, _) in cloth.free_coordinates().iter().filter(|(c, _)| observed[*c].is_finite()) {
+        measured[coordinate] = observed[coordinate];
+    }
     let imbalance = |x: &[f64]| {
         let mut gradient = vec![0.0; x.len()];
         cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));

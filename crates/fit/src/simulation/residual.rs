@@ -23,9 +23,8 @@ impl Simulation<'_> {
             let forces = &frame.forces;
             match self.task.objective {
                 Objective::Forces => {
-                    for (place, force) in forces.iter().enumerate() {
-                        let first = forces.iter().position(|other| other.clip == force.clip).unwrap_or(0);
-                        tracks.entry((replica, force.clip, place - first)).or_default().push(index);
+                    for force in forces {
+                        tracks.entry((replica, force.clip, force.number)).or_default().push(index);
                         index += 1;
                     }
                 }
@@ -116,6 +115,13 @@ impl Simulation<'_> {
         if let Some(whitening) = &result.state.whitening {
             whitening.apply(&mut rows);
         }
+        if let Some(robust) = self.task.robust {
+            for mut row in rows.row_iter_mut() {
+                let (value, slope) = robust.bend(row[0]);
+                row *= slope;
+                row[0] = value;
+            }
+        }
         rows
     }
 }
@@ -159,9 +165,8 @@ impl Residuals for Simulation<'_> {
             let replica = &self.replicas[replica];
             let rows = self.residual_rows(replica, &replica.frames[frame], result, point.len());
             for row in rows.row_iter() {
-                let (value, slope) = self.task.robust.map_or((row[0], 1.0), |robust| robust.bend(row[0]));
-                residual.push(value);
-                derivatives.extend(row.iter().skip(1).map(|d| d * slope));
+                residual.push(row[0]);
+                derivatives.extend(row.iter().skip(1));
             }
         }
         let rows = residual.len();

@@ -47,16 +47,17 @@ impl Plan {
     /// # Errors
     /// Sequences that no replica can be made of.
     pub fn replicas(&self, set: &MeasurementSet, settings: &Settings) -> Result<Vec<Replica>> {
-        let parts = Parts {
+        let parts = |kind: Kind| Parts {
             model: settings.model,
             components: self.components.clone(),
             areal_density: set.fabric.areal_density_kg_m2,
             nodes: settings.nodes,
             diagonals: settings.diagonals,
-            flat: self.flat,
+            // Strips cut on the bias are pulled taut, and nobody saw them buckle.
+            flat: self.flat || kind == Kind::StretchBias,
         };
         let shows = set.sequences.iter().filter(|sequence| self.kinds.contains(&sequence.kind));
-        shows.map(|sequence| Replica::new(sequence, &parts)).collect()
+        shows.map(|sequence| Replica::new(sequence, &parts(sequence.kind))).collect()
     }
 }
 
@@ -76,9 +77,7 @@ pub fn fit(
     let clock = Instant::now();
     let spent_before = watch.meter.read();
     let replicas = plan.replicas(set, settings)?;
-    let in_plane = plan.fitted[0] == Component::Shear && replicas.iter().all(|replica| replica.planar);
-    // What stays in its plane does not feel the bending that the first pass left out.
-    if replicas.is_empty() || plan.pass > 1 && in_plane {
+    if replicas.is_empty() || plan.pass > 1 && !gains_from_bending(plan, &replicas, knowledge) {
         return Ok(None);
     }
     let Start { stiffness, largest, known, assumed } = start(plan, &replicas, knowledge, settings)?;
@@ -105,13 +104,15 @@ pub fn fit(
     let others = knowledge.without(&plan.fitted);
     let judgement = judge(plan, &simulation, &growth, &tracks, &others, complete);
     let Judgement { scatter, covariance, gain, observed } = &judgement;
+    // Where frames were lost on the way nothing is carried on.
+    let uncertain: &[Component] = if complete { &plan.components } else { &[] };
     // What a first pass made of a curve that is not observed was no knowledge either.
     *knowledge = others.clone();
     if *observed {
-        knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, &plan.components, gain);
+        knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, uncertain, gain);
     }
     let basis = Basis {
-        carried: others.groups(&plan.components).into_iter().flatten().collect(),
+        carried: others.groups(uncertain).into_iter().flatten().collect(),
         known: others.curves().components().filter(|c| plan.components.contains(c)).collect(),
         assumed,
     };
@@ -136,6 +137,14 @@ pub fn fit(
     }))
 }
 
+/// True if a second pass differs from the first: shear then has the bending that was left out before, which a sheet feels
+/// only where it was seen to leave its plane.
+fn gains_from_bending(plan: &Plan, replicas: &[Replica], knowledge: &Knowledge) -> bool {
+    let buckled = |replica: &Replica| replica.frames.iter().any(|frame| replica.is_buckled(frame));
+    let bends = [Component::BendWeft, Component::BendWarp].iter().all(|&c| knowledge.knows(c));
+    plan.fitted[0] != Component::Shear || bends && replicas.iter().any(buckled)
+}
+
 /// All frames in equilibrium under the first curve.
 fn simulate<'r>(
     plan: &Plan,
@@ -152,7 +161,7 @@ fn simulate<'r>(
         settings: settings.equilibrium,
         robust: None,
     };
-    let mut simulation = Simulation::new(replicas, task, first, Arc::clone(&watch.meter));
+    let simulation = Simulation::new(replicas, task, first, Arc::clone(&watch.meter));
     if simulation.settled().next().is_none() {
         let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
         return Err(unfit(
@@ -163,9 +172,6 @@ fn simulate<'r>(
                 Objective::Positions => "a sheet that hangs off the table under its weight",
             },
         ));
-    }
-    if let Some(limit) = settings.robust {
-        simulation.make_robust(limit);
     }
     Ok(simulation)
 }
@@ -203,8 +209,8 @@ fn judge(
     Judgement { scatter, covariance, gain, observed }
 }
 
-/// True if the measurements tell the curve's scale: its 95 % band is less than the curve itself, or, where the curve is
-/// far below what is known of the other bending, less than that.
+/// True if the measurements tell the curve's scale: its 95 % band (but for what earlier stages do not know) is less than
+/// the curve itself, or, where the curve is far below what is known of the other bending, less than that.
 fn is_observed(plan: &Plan, growth: &Growth, scatter: &Scatter, knowledge: &Knowledge) -> bool {
     let others = [Component::BendWeft, Component::BendWarp];
     let bends = plan.fitted[0].is_bending();

@@ -45,7 +45,7 @@ pub(super) fn start(
             continue;
         }
         let negative = settings.model.negative_strain(component, settings.compression);
-        let constant = assumption(plan, replicas, component, stiffness);
+        let constant = assumption(plan, replicas, &known, component, stiffness);
         known.set(component, StiffnessCurve::constant(constant, negative).map_err(mechanics(plan))?);
         assumed.push(component);
     }
@@ -57,10 +57,22 @@ pub(super) fn start(
 }
 
 /// What takes the place of a curve that is not known.
-fn assumption(plan: &Plan, replicas: &[Replica], component: Component, stiffness: f64) -> f64 {
-    // Across a strip, and for the other bending: as the fitted one. It hardly matters.
-    if component.is_bending() || plan.fitted[0].is_stretch() {
+fn assumption(
+    plan: &Plan,
+    replicas: &[Replica],
+    known: &Curves,
+    component: Component,
+    stiffness: f64,
+) -> f64 {
+    // Across a strip, and for the other bending where one is fitted: as the fitted one. It hardly matters.
+    if component.is_bending() && plan.fitted[0].is_bending() || plan.fitted[0].is_stretch() {
         return stiffness;
+    }
+    if component.is_bending() {
+        let bending = Component::ALL.into_iter().filter(|other| other.is_bending());
+        let others: Vec<f64> =
+            bending.filter_map(|other| known.get(other)).map(|curve| curve.stiffnesses()[0]).collect();
+        return others.iter().sum::<f64>() / others.len().max(1) as f64;
     }
     // A membrane that hardly gives under its own weight, or under the forces of shear.
     let weight = replicas
