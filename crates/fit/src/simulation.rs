@@ -102,8 +102,8 @@ struct State {
     sensitivity: Vec<f64>,
     /// An unstable equilibrium was met and left: others may exist.
     escaped: bool,
-    /// How errors of what is held enter; taken where a level of the curve's growth begins, and kept, so that its
-    /// objective is one function.
+    /// How errors of what is held enter; taken anew by [`Simulation::set_curve`] and else kept, so that what is minimised
+    /// is one function.
     whitening: Option<Whitening>,
 }
 
@@ -221,6 +221,11 @@ impl<'a> Simulation<'a> {
         // Sensitivities belong to the old control values.
         self.states.iter_mut().for_each(|state| state.sensitivity.clear());
         self.states.iter_mut().for_each(|state| state.whitening = None);
+    }
+
+    /// True if errors of what is held enter the residuals.
+    pub fn is_whitened(&self) -> bool {
+        self.states.iter().any(|state| state.whitening.is_some())
     }
 
     /// The curve of the last evaluation.
