@@ -4,6 +4,9 @@
 
 mod bending;
 mod closed_form;
+mod coverage;
+mod outliers;
 mod recovery;
 mod rig;
 mod shear;
+mod starts;
