@@ -4,7 +4,10 @@
 
 mod bending;
 mod closed_form;
+mod coverage;
+mod outliers;
 mod recovery;
 mod rig;
 mod shear;
+mod starts;
 mod whole;

@@ -1,7 +1,7 @@
 //! Source: bias extension. A glass and polypropylene plain weave (cao2008_bias_extension/, Cao et al. 2008, figure 38), and
 //! the bias strips of a cotton knit and a cupro weave in a tensile machine (u3m_fab_*/B_S2.csv).
 //!
-//! Goal: the sets from which a shear curve is fitted, and what is known of them.
+//! Goal: the sets from which a shear curve is fitted, what is known of them, and that the fit meets it.
 //!
 //! ```text
 //!   fixed ┌──────────────────┐ moving   yarns at ±45°; H × W = 450 × 150 mm, pulled by 106 mm;
@@ -17,12 +17,29 @@
 //! ```
 //!
 //! Parameters: eq. 13 meets the file's column within 0.01° + 0.1 %, eq. 18 within 0.1 %; forces and extensions in the sets are the files'.
+//! Glass with yarns of 1e5 N/m: the simulated angle, as the mean along the axis of the zone that eq. 13 is about, is within 2°
+//! of it up to 35°, and the curve predicts the pull of a strip of 230 × 115 mm at 10–40° within 35 %. Knit, stretch from L_S2 and
+//! W_S2: RMS ≤ 3 % of the largest force.
+//!
+//! At the centre alone the angle is up to 4.5° below eq. 13. Yarns that do not stretch fix how far the middle zone (H − W
+//! long) is drawn, so the mean of γ over its axis; but a yarn that crosses yarns from a clamp shears them alone, at half the
+//! angle, and yields more: with the fitted curve γ runs from 25° at the centre to 32° at the zone's ends where eq. 13 says
+//! 29°. Finer cells (21 × 61 nodes), soft constraints and yarns of 1e6 N/m change it by 0.4° at most: it is the least energy.
 
 use cloth_fit::frame::{Frame, Kind, MeasurementSet, Sequence};
+use cloth_fit::incremental::{Stage, fit};
+use cloth_fit::knowledge::Knowledge;
+use cloth_fit::prediction::predict;
+use cloth_fit::simulation::Settled;
 use cloth_fit::specimen::Specimen;
+use cloth_fit::stage::{Settings, Watch};
 use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::material::{Component, Curves};
 use cloth_sim::mesh::Diagonals;
+use fit_cloth_tests::own_mesh::equilibria;
 use fit_cloth_tests::{data, rows, weightless};
+use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 use std::path::Path;
 
@@ -106,12 +123,19 @@ pub(crate) fn glass() -> MeasurementSet {
     LARGE.read(&data("cao2008_bias_extension").join("glass_plain_150x450mm.csv"))
 }
 
-/// The pulls of the smaller strip at 10, 20, 30 and 40°, by eq. 18 from its normalised shear forces; they start from 0.
+/// The pulls of the smaller strip at 10, 20, 30 and 40°, by eq. 18 from its normalised shear forces. At 5°, half of the
+/// first angle, its force is taken to be the same share of that at 10° as in the larger strip.
 pub(crate) fn small_glass() -> MeasurementSet {
-    let forces = SMALL_FORCES.map(|[degrees, force]| [degrees.to_radians(), force]);
-    let known = [&[[0.0; 2]], &forces[..]].concat();
+    let large: Vec<_> = rows("cao2008_bias_extension/glass_plain_150x450mm.csv")
+        .iter()
+        .map(|row| [2, 3].map(|column| row[column].parse::<f64>().expect("a number")))
+        .collect();
+    let [[first, force], ..] = SMALL_FORCES;
+    let at_half = force * interpolated(&large, first / 2.0) / interpolated(&large, first);
+    let forces = [&[[first / 2.0, at_half]], &SMALL_FORCES[..]].concat();
+    let known: Vec<_> = forces.into_iter().map(|[degrees, force]| [degrees.to_radians(), force]).collect();
     let mut table = "displacement_mm,force_N\n".to_owned();
-    for [angle, force] in forces {
+    for &[angle, force] in &known[1..] {
         let pull = SMALL.pull(angle, force, interpolated(&known, angle / 2.0));
         table += &format!("{},{pull}\n", 1e3 * SMALL.displacement(angle));
     }
@@ -141,10 +165,11 @@ fn glass_is_a_bias_strip_with_the_forces_and_angles_of_its_table() {
             "{displacement} m: {angle}, not {expected}"
         );
     }
-    let specimen = Specimen::new(sequence, None, Diagonals::Alternating).unwrap();
+    // Square cells: their diagonals run along the yarns.
+    let specimen = Specimen::new(sequence, None, Diagonals::Crossed).unwrap();
     let cells = specimen.grid.cell();
     println!("glass: {} × {} nodes", specimen.grid.columns, specimen.grid.rows);
-    assert!((cells[0] / cells[1] - 1.0).abs() < 0.1);
+    assert!((cells[0] / cells[1] - 1.0).abs() < 1e-9);
     let along = specimen.mesh.material[1] - specimen.mesh.material[0];
     assert!((along.x.abs() - along.y.abs()).abs() < 1e-12);
 }
@@ -187,5 +212,113 @@ fn bias_strips_of_the_tensile_machine_are_read() {
         let shift = sequence.frames.last().unwrap().poses[1].translation.vector.dot(&pull);
         println!("{fabric}: {} frames to {:.1} mm and {largest:.2} N", sequence.frames.len(), 1e3 * shift);
         assert!(sequence.frames.len() > 50 && largest > 1.0 && shift > 0.0);
+    }
+}
+
+/// Mean shear angle, rad, of the triangles whose middle lies in a rectangle around that of the strip.
+///
+/// * `half` — half its length and half its width, m
+fn mean_angle(settled: &Settled<'_>, half: [f64; 2]) -> f64 {
+    let specimen = &settled.replica.specimen;
+    let mesh = &specimen.mesh;
+    let size = Vector2::new(specimen.grid.width, specimen.grid.height);
+    let [long, short] = [size.imax(), size.imin()];
+    let place = |node: usize| Vector3::from_column_slice(&settled.x[3 * node..3 * node + 3]);
+    let angle = |&[a, b, c]: &[usize; 3]| {
+        let off = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]).xy() / 3.0 - size / 2.0;
+        let rest = Matrix2::from_columns(&[b, c].map(|node| mesh.material[node] - mesh.material[a]));
+        let yarns =
+            Matrix3x2::from_columns(&[b, c].map(|node| place(node) - place(a))) * rest.try_inverse()?;
+        let inside = off[long].abs() <= half[0] && off[short].abs() <= half[1];
+        inside.then(|| yarns.column(0).normalize().dot(&yarns.column(1).normalize()).asin().abs())
+    };
+    let angles: Vec<f64> = mesh.triangles.iter().filter_map(angle).collect();
+    angles.iter().sum::<f64>() / angles.len() as f64
+}
+
+#[test]
+fn glass_shears_as_its_yarns_let_it_and_predicts_another_strip() {
+    let set = glass();
+    let yarn = StiffnessCurve::constant(1e5, NegativeStrain::Green).unwrap();
+    let yarns: Curves =
+        [Component::StretchWeft, Component::StretchWarp].map(|c| (c, yarn.clone())).into_iter().collect();
+    let settings = Settings::default();
+    let known = Knowledge::exact(yarns);
+    let report = fit(&set, &[Stage::Shear], &known, &settings, &mut Watch::default()).unwrap();
+    let stage = report.stage(Component::Shear).unwrap();
+    let sequence = &stage.sequences[0];
+    println!(
+        "glass: {} points {:.1?} N/m to {:.2}, {} frames, {} dropped, RMS {:.2} % of {:.1} N, {:.1} s",
+        stage.curve.curve.len(),
+        stage.curve.curve.stiffnesses(),
+        stage.curve.visited[1],
+        sequence.frames,
+        stage.dropped.len(),
+        100.0 * sequence.force_rms.unwrap() / sequence.force_largest,
+        sequence.force_largest,
+        stage.seconds
+    );
+    for level in &stage.levels {
+        println!("    {} points: {:.4} N, {}", level.points, level.rms, level.status);
+    }
+    let BiasStrip { length, width } = LARGE;
+    let (mut centre, mut zone) = (0.0f64, 0.0f64);
+    equilibria(&set, &set.sequences[0], report.curves(), &settings, |settled, _| {
+        let displacement = set.sequences[0].frames[settled.frame.index].poses[1].translation.vector.x;
+        let expected = LARGE.angle(displacement).to_degrees();
+        let [middle, axis] = [[0.03, 0.03], [(length - width) / 2.0, 0.02]]
+            .map(|half| mean_angle(&settled, half).to_degrees());
+        println!("    eq. 13 {expected:5.2}°, along the axis {axis:5.2}°, at the centre {middle:5.2}°");
+        if expected <= 35.0 {
+            centre = centre.max((middle - expected).abs());
+            zone = zone.max((axis - expected).abs());
+        }
+    });
+    println!("glass: up to 35° within {zone:.2}° along the axis, within {centre:.2}° at the centre");
+    let small = predict(&small_glass(), &[Kind::StretchBias], report.curves(), &settings).unwrap();
+    let mut off = 0.0f64;
+    for row in &small.sequences[0].forces {
+        println!("    230 × 115 mm: {:.2} N measured, {:.2} N predicted", row.measured, row.simulated);
+        off = off.max((row.simulated / row.measured - 1.0).abs());
+    }
+    println!("glass: the smaller strip within {:.0} %", 100.0 * off);
+    assert!(stage.converged && stage.dropped.is_empty() && small.dropped.is_empty());
+    // The least tangent allowed is far below any that is needed, however little the yarns give.
+    assert_eq!(stage.curve.active_constraints, 0);
+    assert!(zone <= 2.0 && centre <= 4.5 && off <= 0.35);
+}
+
+#[test]
+fn a_knit_on_the_bias_is_met_within_3_percent() {
+    for (fabric, allowed) in crate::strips::FABRICS.into_iter().zip([0.03, f64::INFINITY]) {
+        let strips = [("W_S2", Direction::Weft), ("L_S2", Direction::Warp), ("B_S2", Direction::Bias)];
+        let sequences = strips.map(|(strip, direction)| crate::strips::import(fabric, strip, direction));
+        let set = weightless(fabric, sequences.to_vec());
+        let report = fit(
+            &set,
+            &[Stage::Stretch, Stage::Shear],
+            &Knowledge::default(),
+            &Settings::default(),
+            &mut Watch::default(),
+        )
+        .unwrap();
+        for stage in report.last_stages() {
+            let sequence = &stage.sequences[0];
+            let share = sequence.force_rms.unwrap() / sequence.force_largest;
+            println!(
+                "{fabric} {}: {} points {:.1?} N/m to {:.2}, RMS {:.2} % of {:.2} N, {} frames, {} dropped, {:.1} s",
+                stage.name(),
+                stage.curve.curve.len(),
+                stage.curve.curve.stiffnesses(),
+                stage.curve.visited[1],
+                100.0 * share,
+                sequence.force_largest,
+                sequence.frames,
+                stage.dropped.len(),
+                stage.seconds
+            );
+            assert!(share <= allowed, "{share}");
+            assert!(stage.converged && stage.dropped.is_empty() || allowed > 1.0);
+        }
     }
 }

@@ -18,6 +18,10 @@ use std::time::Instant;
 /// So many numbers of points in a row that do not pay are the end.
 const TRIES: usize = 2;
 
+/// A level's residuals are whitened anew at its minimum until that moves by less than this share, or so often.
+const SETTLED: f64 = 1e-5;
+const MOST_WHITENINGS: usize = 4;
+
 /// A curve that was grown.
 pub struct Growth {
     /// The curve.
@@ -140,20 +144,48 @@ fn fit_level(
     let [unit, measurements] = [simulation.unit(), simulation.measurements() as f64];
     (watch.observe)(Event::Level { component: simulation.task().fitted[0], points });
     simulation.set_curve(curve.clone());
+    if let Some(limit) = settings.robust {
+        simulation.make_robust(limit);
+    }
     let domain = domain(curve, settings.constraints, lowest_tangent)?;
-    let start = DVector::from_column_slice(curve.stiffnesses());
     let mut observe = |iteration: &Iteration| {
         let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
         let factorisations = watch.meter.read().since(&spent_before).factorisations;
         let seconds = clock.elapsed().as_secs_f64();
         (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
     };
-    let outcome = match minimise(simulation, &start, &domain, &settings.outer, &mut observe) {
-        Ok(outcome) => outcome,
-        Err(never) => match never {},
+    let mut iterations: Vec<Iteration> = Vec::new();
+    let mut fit_from = |simulation: &mut Simulation<'_>, start: &DVector<f64>| {
+        let done = iterations.len();
+        let mut numbered = |step: &Iteration| {
+            let step = Iteration { iteration: done + step.iteration, ..step.clone() };
+            observe(&step);
+            iterations.push(step);
+        };
+        match minimise(simulation, start, &domain, &settings.outer, &mut numbered) {
+            Ok(outcome) => outcome,
+            Err(never) => match never {},
+        }
     };
+    let mut outcome = fit_from(simulation, &DVector::from_column_slice(curve.stiffnesses()));
+    // How errors of what is held enter depends on the shapes: those of the minimum count, wherever the fit started.
+    for _ in 0..MOST_WHITENINGS {
+        if !simulation.is_whitened() || outcome.residual.is_empty() {
+            break;
+        }
+        simulation.set_curve(curve.with_stiffnesses(outcome.point.iter().copied().collect())?);
+        let again = fit_from(simulation, &outcome.point);
+        let moved = (&again.point - &outcome.point).amax() / outcome.point.amax();
+        if again.residual.is_empty() {
+            break;
+        }
+        outcome = again;
+        if moved <= SETTLED {
+            break;
+        }
+    }
     let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
-    let (status, iterations) = (outcome.status.to_string(), outcome.iterations.clone());
+    let status = outcome.status.to_string();
     Ok((outcome, domain, Level { points, rms, status, iterations }))
 }
 

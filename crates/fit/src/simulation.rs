@@ -147,6 +147,11 @@ impl<'a> Simulation<'a> {
         self.states.iter_mut().for_each(|state| state.whitening = None);
     }
 
+    /// True if errors of what is held enter the residuals.
+    pub fn is_whitened(&self) -> bool {
+        self.states.iter().any(|state| state.whitening.is_some())
+    }
+
     /// The curve of the last evaluation.
     pub fn curve(&self) -> &StiffnessCurve {
         &self.curve

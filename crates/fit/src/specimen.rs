@@ -111,8 +111,11 @@ fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2]
 fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
     let cells =
         (DEFAULT_CELLS * DEFAULT_CELLS) as f64 / if diagonals == Diagonals::Crossed { 2.0 } else { 1.0 };
-    let side = (width * height / cells).sqrt();
-    [width, height].map(|length| ((length / side).round() as usize).max(2) + 1)
+    let count = |length: f64, side: f64| (length / side).round().max(2.0);
+    // The shorter side first, since it takes fewer cells: the longer one then meets their size better.
+    let shorter = width.min(height);
+    let side = shorter / count(shorter, (width * height / cells).sqrt());
+    [width, height].map(|length| count(length, side) as usize + 1)
 }
 
 /// The rest rectangle.

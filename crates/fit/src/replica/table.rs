@@ -26,6 +26,11 @@ const STRAIGHT: f64 = 12.0;
 /// Fewer free lines than this say nothing of bending.
 const FEWEST_FREE: usize = 3;
 
+/// A node so many times farther off its line than the median node is a stray: 9 standard deviations of noise. Distances of
+/// rounding, m, are none.
+const STRAY: f64 = 6.0;
+const ROUNDING: f64 = 1e-9;
+
 /// The lines of a specimen's grid that run along a table's edge, from the one farthest back on the table to the tip.
 #[derive(Debug, Clone)]
 pub(super) struct Lines {
@@ -174,10 +179,28 @@ struct Line {
 
 impl Line {
     fn through(specimen: &Specimen, nodes: &[usize], shape: &[f64]) -> Option<Self> {
-        let seen: Vec<(Vector3<f64>, Vector3<f64>)> = nodes
+        let mut seen: Vec<(Vector3<f64>, Vector3<f64>)> = nodes
             .iter()
             .filter_map(|&node| Some((specimen.mesh.positions[node], point(shape, node)?)))
             .collect();
+        // Nodes seen far off the line were not seen there.
+        let mut line = Self::through_all(&seen)?;
+        loop {
+            let off =
+                |(rest, place): &(Vector3<f64>, Vector3<f64>)| (place - line.at(*rest, &line.slope)).norm();
+            let mut distances: Vec<f64> = seen.iter().map(off).collect();
+            distances.sort_by(f64::total_cmp);
+            let limit = f64::max(STRAY * distances[distances.len() / 2], ROUNDING);
+            let near: Vec<_> = seen.iter().copied().filter(|node| off(node) <= limit).collect();
+            if near.len() == seen.len() {
+                return Some(line);
+            }
+            seen = near;
+            line = Self::through_all(&seen)?;
+        }
+    }
+
+    fn through_all(seen: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Self> {
         if seen.len() < 2 {
             return None;
         }
@@ -186,7 +209,7 @@ impl Line {
         let centre = seen.iter().map(|(_, place)| place).sum::<Vector3<f64>>() / count;
         let along = (seen[seen.len() - 1].0 - seen[0].0).normalize();
         let (mut product, mut square) = (Vector3::zeros(), 0.0);
-        for (at, place) in &seen {
+        for (at, place) in seen {
             let s = (at - rest).dot(&along);
             product += (place - centre) * s;
             square += s * s;

@@ -22,8 +22,8 @@ pub(super) struct State {
     pub(super) sensitivity: Vec<f64>,
     /// An unstable equilibrium was met and left: others may exist.
     pub(super) escaped: bool,
-    /// How errors of what is held enter; taken where a level of the curve's growth begins, and kept, so that its
-    /// objective is one function.
+    /// How errors of what is held enter; taken anew by [`Simulation::set_curve`] and else kept, so that what is minimised
+    /// is one function.
     pub(super) whitening: Option<Whitening>,
 }
 

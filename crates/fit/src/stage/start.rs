@@ -50,7 +50,7 @@ pub(super) fn start(
         assumed.push(component);
     }
     let largest = match plan.objective {
-        Objective::Forces => largest_from_forces(plan, replicas, stiffness, &known, settings)?,
+        Objective::Forces => largest_from_forces(plan, replicas, stiffness, settings)?,
         Objective::Positions => stiffness,
     };
     Ok(Start { stiffness: stiffness * settings.start_factor, largest, known, assumed })
@@ -99,7 +99,7 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
     }
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
     let one = StiffnessCurve::constant(1.0, negative).map_err(mechanics(plan))?;
-    let mean = gap::start(replicas, &plan.fitted, &one, &Curves::default(), &Domain::everywhere(1))[0];
+    let mean = gap::start(replicas, &plan.fitted, &one, &Domain::everywhere(1))[0];
     if !(mean > 0.0) {
         return Err(unfit(
             replicas,
@@ -111,19 +111,13 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
 }
 
 /// The largest control value of a curve with all its points on the blended shapes.
-fn largest_from_forces(
-    plan: &Plan,
-    replicas: &[Replica],
-    mean: f64,
-    known: &Curves,
-    settings: &Settings,
-) -> Result<f64> {
+fn largest_from_forces(plan: &Plan, replicas: &[Replica], mean: f64, settings: &Settings) -> Result<f64> {
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
     let points = settings.most_points();
     let strains = equidistant(points, blended_range(plan, replicas));
     let fine = StiffnessCurve::new(strains, vec![mean; points], negative).map_err(mechanics(plan))?;
     let positive = domain(&fine, Constraints::ControlPoints, 0.0).map_err(mechanics(plan))?;
-    Ok(gap::start(replicas, &plan.fitted, &fine, known, &positive).amax().max(mean))
+    Ok(gap::start(replicas, &plan.fitted, &fine, &positive).amax().max(mean))
 }
 
 /// The largest strain on the blended shapes of all frames.

@@ -1,0 +1,259 @@
+//! How often the 95 % bands hold the truth, where the truth is one that the fit can represent: simulated on the fit's own
+//! mesh, under curves with as many control points.
+//!
+//! ```text
+//! truth ──▶ the fit's own simulation ──▶ + 3 mN, 0.075 mm (seed) ──▶ fit ──▶ share of the rows whose band holds the truth
+//! ```
+//!
+//! | stage | test | truth | carried forward |
+//! |---|---|---|---|
+//! | stretch | closed_form.rs | 5 points | – |
+//! | shear | picture frame | 5 points | – |
+//! | shear | bias strip, 100 × 50 mm, to 12 % | constant | both stretches, from strips with 30 mN |
+//! | bending | 100 mm square, overhangs of 53 to 87 mm, held lines as noisy as the rest | constant, 2 points | – |
+//! | bending | the same three times: along weft, warp and the bias | constants 1 : 0.4 : 0.6 | the other two, in two passes |
+//!
+//! Averaged over 201 rows and 100 seeds the share is 90–99 %; 20 seeds on fewer nodes are within 85–100 %. What earlier
+//! stages do not know matters: left out, the band of the bias strip holds the truth in 12–15 %.
+
+use cloth_fit::frame::{Kind, Sequence};
+use cloth_fit::incremental::{Stage, fit};
+use cloth_fit::knowledge::Knowledge;
+use cloth_fit::report::StageReport;
+use cloth_fit::stage::{self, Settings, Variant, Watch};
+use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
+use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};
+use cloth_sim::material::{Component, Compression, Curves, Model};
+use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, POSITION_NOISE, SIDE};
+use fit_cloth_tests::own_mesh::{simulated, with_noise};
+use fit_cloth_tests::picture_frame::PictureFrame;
+use fit_cloth_tests::{coverage, weightless};
+
+const FORCE_NOISE: f64 = 3e-3;
+
+/// So many seeds, and the nodes a side.
+#[derive(Clone, Copy)]
+struct Size {
+    seeds: u64,
+    nodes: usize,
+    bending: usize,
+}
+
+const FAST: Size = Size { seeds: 20, nodes: 5, bending: 13 };
+const FULL: Size = Size { seeds: 100, nodes: 13, bending: 25 };
+
+impl Size {
+    fn judge(self, name: &str, held: f64) {
+        println!("{name}: {} seeds, the band holds the truth in {:.1} %", self.seeds, 100.0 * held);
+        let allowed = if self.seeds < 100 { 0.85..=1.0 } else { 0.90..=0.99 };
+        assert!(allowed.contains(&held), "{name}: {held}");
+    }
+
+    fn mean(self, share: impl Fn(u64) -> f64) -> f64 {
+        (0..self.seeds).map(share).sum::<f64>() / self.seeds as f64
+    }
+}
+
+fn curve(component: Component, strains: Vec<f64>, stiffnesses: &[f64]) -> (Component, StiffnessCurve) {
+    let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+    (component, StiffnessCurve::new(strains, stiffnesses.to_vec(), negative).unwrap())
+}
+
+fn constant(component: Component, stiffness: f64) -> (Component, StiffnessCurve) {
+    curve(component, vec![0.0], &[stiffness])
+}
+
+fn membrane() -> Curves {
+    let pairs = [(Component::StretchWeft, 400.0), (Component::StretchWarp, 300.0), (Component::Shear, 50.0)];
+    pairs.map(|(component, stiffness)| constant(component, stiffness)).into_iter().collect()
+}
+
+/// Share of the rows of a stage's curve whose band holds the truth.
+fn share(stage: &StageReport, truth: &Curves) -> f64 {
+    let component = stage.components[0];
+    let scale = if component.is_bending() { HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
+    assert!(stage.converged, "{component}: {:?}", stage.levels);
+    let truth = truth.get(component).unwrap();
+    coverage(&stage.curve.samples, &|strain| truth.stress(scale * strain))
+}
+
+fn shear_in_a_picture_frame(size: Size) {
+    let angles: Vec<f64> = (1..=20).map(|i| 0.5f64.asin() * f64::from(i) / 20.0).collect();
+    let stiffnesses = vec![60.0, 70.0, 95.0, 130.0, 150.0];
+    let truth = StiffnessCurve::new(equidistant(5, 0.5), stiffnesses, NegativeStrain::Odd).unwrap();
+    let settings = Settings { nodes: Some([size.nodes; 2]), ..Settings::default() };
+    let truths: Curves = [(Component::Shear, truth.clone())].into_iter().collect();
+    let held = size.mean(|seed| {
+        let law = |strain: f64| truth.stress(strain);
+        let set = PictureFrame { noise: Some(seed), ..PictureFrame::of_law(&law, &angles) }.measure();
+        let known = Knowledge::default();
+        let report = fit(&set, &[Stage::Shear], &known, &settings, &mut Watch::default()).unwrap();
+        share(report.stage(Component::Shear).unwrap(), &truths)
+    });
+    size.judge("shear, picture frame", held);
+}
+
+#[test]
+fn bands_of_shear_hold_the_truth() {
+    shear_in_a_picture_frame(FAST);
+}
+
+#[test]
+#[ignore = "release: 100 seeds on 13x13 nodes"]
+fn bands_of_shear_hold_the_truth_in_full() {
+    shear_in_a_picture_frame(FULL);
+}
+
+/// A strip of 100 × 50 mm, pulled in equal steps.
+fn strip(direction: Direction, largest: f64) -> Sequence {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("strip.csv");
+    let rows = (1..=12).map(|i| format!("{},1\n", largest * f64::from(i) / 12.0));
+    std::fs::write(&path, format!("strain,force_N\n{}", rows.collect::<String>())).unwrap();
+    let extension = Extension::Strain("strain:1".into());
+    read_strip(&path, &StripTest::new(direction, 0.1, 0.05, extension, "force_N".into())).unwrap()
+}
+
+fn shear_after_stretch(size: Size) {
+    let pulls = [(Direction::Weft, 0.05), (Direction::Warp, 0.05), (Direction::Bias, 0.12)];
+    let nominal = weightless("strips", pulls.map(|(direction, largest)| strip(direction, largest)).to_vec());
+    let truth: Curves =
+        [(Component::StretchWeft, 300.0), (Component::StretchWarp, 200.0), (Component::Shear, 150.0)]
+            .map(|(component, stiffness)| constant(component, stiffness))
+            .into_iter()
+            .collect();
+    let nodes = Some([2 * size.nodes - 1, size.nodes]);
+    let settings = Settings { nodes, variant: Variant::Linear, ..Settings::default() };
+    let exact = simulated(&nominal, &truth, &settings);
+    let force = |kind| if kind == Kind::StretchBias { FORCE_NOISE } else { 10.0 * FORCE_NOISE };
+    // With what the stretch stages do not know carried forward, and without.
+    let held = |carried: bool| {
+        size.mean(|seed| {
+            let set = with_noise(&exact, seed, POSITION_NOISE, force);
+            let fit = |stage, known: &Knowledge| {
+                fit(&set, &[stage], known, &settings, &mut Watch::default()).unwrap()
+            };
+            let stretch = fit(Stage::Stretch, &Knowledge::default()).knowledge;
+            let known = if carried { stretch } else { Knowledge::exact(stretch.curves().clone()) };
+            share(fit(Stage::Shear, &known).stage(Component::Shear).unwrap(), &truth)
+        })
+    };
+    let without = held(false);
+    println!("shear, bias strip: without what stretch does not know {:.1} %", 100.0 * without);
+    size.judge("shear, bias strip", held(true));
+    assert!(without < 0.5, "{without}");
+}
+
+#[test]
+fn bands_of_shear_carry_what_stretch_does_not_know() {
+    shear_after_stretch(FAST);
+}
+
+#[test]
+#[ignore = "release: 100 seeds on 25x13 nodes"]
+fn bands_of_shear_carry_what_stretch_does_not_know_in_full() {
+    shear_after_stretch(FULL);
+}
+
+const DENSITY: f64 = 0.2;
+
+/// A square pushed over an edge, its shapes seen on the simulation's own nodes.
+fn overhanging(kind: Kind, nodes: usize) -> Sequence {
+    let rigidity = DENSITY * GRAVITY * 0.085f64.powi(3) / 30.0;
+    let cells = nodes - 1;
+    let overhangs: Vec<f64> =
+        (0..5).map(|i| ((cells * (16 + 2 * i) / 30) as f64 + 0.4) * SIDE / cells as f64).collect();
+    let moment = |curvature: f64| rigidity * curvature;
+    let measured = [nodes; 2];
+    Cantilever { kind, areal_density: DENSITY, moment: &moment, overhangs: &overhangs, measured, noise: None }
+        .sequence()
+}
+
+/// Stiffness of hinges at Γ = 30.
+const HINGES: f64 = DENSITY * GRAVITY * 0.085 * 0.085 * 0.085 / 30.0 / HINGE_STRAIN_PER_CURVATURE;
+
+fn bending_alone(size: Size, points: usize) {
+    let largest = HINGE_STRAIN_PER_CURVATURE * 200.0;
+    let weft = curve(
+        Component::BendWeft,
+        equidistant(points, largest),
+        [&[HINGES][..], &[1.3 * HINGES, 0.8 * HINGES]][points - 1],
+    );
+    let others = [Component::BendWarp, Component::BendDiagonal].map(|component| constant(component, HINGES));
+    let membrane = membrane();
+    let known: Curves = membrane
+        .components()
+        .map(|component| (component, membrane.get(component).unwrap().clone()))
+        .chain(others)
+        .collect();
+    let mut truth = known.clone();
+    truth.set(weft.0, weft.1);
+    let settings = Settings { nodes: Some([size.bending; 2]), points, ..Settings::default() };
+    let nominal = weightless("sheet", vec![overhanging(Kind::BendWeft, size.bending)]);
+    let exact = simulated(&nominal, &truth, &settings);
+    let plan = stage::bend::plan(&[Component::BendWeft], 1);
+    let held = size.mean(|seed| {
+        let set = with_noise(&exact, seed, POSITION_NOISE, |_| FORCE_NOISE);
+        let mut known = Knowledge::exact(known.clone());
+        let stage = stage::fit(&set, &plan, &mut known, &settings, &mut Watch::default()).unwrap();
+        share(&stage.unwrap(), &truth)
+    });
+    size.judge(&format!("bend-weft, {points} points"), held);
+}
+
+#[test]
+fn bands_of_bending_hold_the_truth() {
+    bending_alone(FAST, 1);
+    bending_alone(FAST, 2);
+}
+
+#[test]
+#[ignore = "release: 100 seeds on 25x25 nodes"]
+fn bands_of_bending_hold_the_truth_in_full() {
+    bending_alone(FULL, 1);
+    bending_alone(FULL, 2);
+}
+
+fn all_bending(size: Size) {
+    let bends = [
+        (Component::BendWeft, HINGES),
+        (Component::BendWarp, 0.4 * HINGES),
+        (Component::BendDiagonal, 0.6 * HINGES),
+    ];
+    let known = membrane();
+    let mut truth = known.clone();
+    bends.iter().for_each(|&(component, stiffness)| {
+        let (component, curve) = constant(component, stiffness);
+        truth.set(component, curve);
+    });
+    let settings =
+        Settings { nodes: Some([size.bending; 2]), variant: Variant::Linear, ..Settings::default() };
+    let kinds = [Kind::BendWeft, Kind::BendWarp, Kind::BendBias];
+    let nominal =
+        weightless("sheet", kinds.into_iter().map(|kind| overhanging(kind, size.bending)).collect());
+    let exact = simulated(&nominal, &truth, &settings);
+    let shares: Vec<[f64; 3]> = (0..size.seeds)
+        .map(|seed| {
+            let set = with_noise(&exact, seed, POSITION_NOISE, |_| FORCE_NOISE);
+            let known = Knowledge::exact(known.clone());
+            let report = fit(&set, &[Stage::Bend], &known, &settings, &mut Watch::default()).unwrap();
+            bends.map(|(component, _)| share(report.stage(component).unwrap(), &truth))
+        })
+        .collect();
+    for (i, (component, _)) in bends.into_iter().enumerate() {
+        let held = shares.iter().map(|shares| shares[i]).sum::<f64>() / shares.len() as f64;
+        size.judge(&format!("all bending, {component}"), held);
+    }
+}
+
+#[test]
+fn bands_of_bending_carry_what_the_others_do_not_know() {
+    all_bending(FAST);
+}
+
+#[test]
+#[ignore = "release: 100 seeds on 25x25 nodes"]
+fn bands_of_bending_carry_what_the_others_do_not_know_in_full() {
+    all_bending(FULL);
+}

@@ -1,0 +1,124 @@
+//! Tests as the fit itself simulates them: equilibria under known curves, and what they would be measured as.
+//!
+//! ```text
+//! nominal set ──▶ the fit's replicas ──▶ equilibria ──▶ the same set with their shapes and forces (+ noise)
+//!                 known curves ────────▶
+//! ```
+
+use cloth_fit::frame::{Cord, Kind, MeasurementSet, Noise, Sequence};
+use cloth_fit::replica::Replica;
+use cloth_fit::simulation::{Objective, Settled, Simulation, Task};
+use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::material::{Component, Curves};
+use nalgebra::{Point3, Vector3};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+use std::sync::Arc;
+
+/// The stage that fits on a test.
+fn plan(kind: Kind) -> Plan {
+    match kind {
+        Kind::StretchWeft | Kind::StretchWarp => {
+            stretch::plan(&[Component::StretchWeft, Component::StretchWarp])
+        }
+        Kind::Shear | Kind::StretchBias => shear::plan(1),
+        _ => bend::plan(&[Component::BendWeft], 1),
+    }
+}
+
+/// Equilibria of a sequence under known curves, as the stage that fits on it simulates them: frame by frame with the forces
+/// along the measured components, N.
+///
+/// # Panics
+/// If the sequence has no replica, or a frame no equilibrium.
+pub fn equilibria<T>(
+    set: &MeasurementSet,
+    sequence: &Sequence,
+    curves: &Curves,
+    settings: &Settings,
+    mut read: impl FnMut(Settled<'_>, &[f64]) -> T,
+) -> Vec<T> {
+    let alone = MeasurementSet { fabric: set.fabric.clone(), sequences: vec![sequence.clone()] };
+    let mut plan = plan(sequence.kind);
+    plan.kinds = vec![sequence.kind];
+    plan.components.retain(|&component| curves.get(component).is_some());
+    let replicas: Vec<Replica> = plan.replicas(&alone, settings).expect("a sequence that can be simulated");
+    let task = Task {
+        fitted: Vec::new(),
+        objective: Objective::Forces,
+        known: curves.clone(),
+        settings: settings.equilibrium,
+        robust: None,
+    };
+    let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).expect("a curve");
+    let mut simulation = Simulation::new(&replicas, task, none, Arc::default());
+    let forces = simulation.settle();
+    assert!(simulation.dropped().is_empty(), "{:?}", simulation.dropped());
+    simulation.settled().zip(&forces).map(|(settled, forces)| read(settled, forces)).collect()
+}
+
+/// A set whose shapes and forces are those of the fit's own simulation under known curves. Shapes need a measured mesh with
+/// the simulation's nodes.
+pub fn simulated(nominal: &MeasurementSet, curves: &Curves, settings: &Settings) -> MeasurementSet {
+    let mut set = nominal.clone();
+    for (sequence, exact) in nominal.sequences.iter().zip(&mut set.sequences) {
+        equilibria(nominal, sequence, curves, settings, |settled, forces| {
+            let Settled { replica, frame, x, .. } = settled;
+            let out = replica.specimen.frame.rotation.inverse();
+            let exact = &mut exact.frames[frame.index];
+            exact.cords = frame
+                .forces
+                .iter()
+                .zip(forces)
+                .map(|(component, cloth)| {
+                    let along = cloth + component.measured - component.force;
+                    Cord { clip: component.clip, force: out * (component.direction * along), point: None }
+                })
+                .collect();
+            for (place, rest) in exact.positions.iter_mut().flatten().zip(&sequence.mesh.positions) {
+                let away = |&node: &usize| (replica.specimen.rest_in_world(node) - rest).norm();
+                let nodes = 0..replica.specimen.mesh.len();
+                let node = nodes.min_by(|a, b| away(a).total_cmp(&away(b))).expect("nodes");
+                assert!(away(&node) < 1e-9, "a vertex is no node");
+                let inside = Point3::from_slice(&x[3 * node..3 * node + 3]);
+                *place = (replica.specimen.frame.inverse() * inside).coords;
+            }
+        });
+    }
+    set
+}
+
+/// Adds noise to shapes and forces, and tells the fit of it.
+///
+/// * `position` — standard deviation of a vertex's coordinates, m
+/// * `force` — of a force along the load cell, or of each of its components, N; by the test
+pub fn with_noise(
+    exact: &MeasurementSet,
+    seed: u64,
+    position: f64,
+    force: impl Fn(Kind) -> f64,
+) -> MeasurementSet {
+    let mut random = StdRng::seed_from_u64(seed);
+    let mut normal = |deviation: f64| -> f64 {
+        let sample: f64 = StandardNormal.sample(&mut random);
+        deviation * sample
+    };
+    let mut set = exact.clone();
+    for sequence in &mut set.sequences {
+        let force = force(sequence.kind);
+        sequence.noise = Some(Noise { position_m: Some(position), force_n: Some(force) });
+        for frame in &mut sequence.frames {
+            for cord in &mut frame.cords {
+                cord.force += match sequence.force_direction {
+                    Some(direction) => direction * normal(force),
+                    None => Vector3::from_fn(|_, _| normal(force)),
+                };
+            }
+            for place in frame.positions.iter_mut().flatten() {
+                *place += Vector3::from_fn(|_, _| normal(position));
+            }
+        }
+    }
+    set
+}
