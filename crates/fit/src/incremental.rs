@@ -96,9 +96,9 @@ impl FitReport {
         self.knowledge.curves()
     }
 
-    /// Every stage came to its minimum.
+    /// Every curve that was observed came to its minimum.
     pub fn converged(&self) -> bool {
-        self.last_stages().all(|stage| stage.converged)
+        self.last_stages().all(|stage| stage.converged || !stage.curve.observed)
     }
 }
 

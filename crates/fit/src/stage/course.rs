@@ -76,9 +76,11 @@ pub fn fit(
     let clock = Instant::now();
     let spent_before = watch.meter.read();
     let replicas = plan.replicas(set, settings)?;
-    let in_plane = plan.fitted[0] == Component::Shear && replicas.iter().all(|replica| replica.planar);
-    // What stays in its plane does not feel the bending that the first pass left out.
-    if replicas.is_empty() || plan.pass > 1 && in_plane {
+    let bends = knowledge.curves().components().any(Component::is_bending);
+    let alike =
+        plan.fitted[0] == Component::Shear && (!bends || replicas.iter().all(|replica| replica.planar));
+    // Nothing is known of the bending that the first pass left out, or what stays in its plane does not feel it.
+    if replicas.is_empty() || plan.pass > 1 && alike {
         return Ok(None);
     }
     let Start { stiffness, largest, known, assumed } = start(plan, &replicas, knowledge, settings)?;
