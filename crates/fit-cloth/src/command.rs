@@ -5,6 +5,7 @@ pub mod fit;
 pub mod goal;
 pub mod import;
 pub mod rig;
+pub mod validate;
 
 use crate::failure::Failure;
 use crate::options::{Command, Options, Telling};
@@ -34,6 +35,7 @@ pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failur
         Command::Bend(flags) => fit::run(Goal::Bend, flags, options.telling, output),
         Command::Fit(flags) => fit::run(Goal::All, flags, options.telling, output),
         Command::Compare(compare) => compare::run(compare, options.telling, output),
+        Command::Validate(validate) => validate::run(validate, options.telling, output),
     }
 }
 

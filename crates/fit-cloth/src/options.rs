@@ -4,13 +4,14 @@ mod choice;
 mod flags;
 
 pub use choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
-pub(crate) use flags::is_inside;
-pub use flags::{FitFlags, SetFlags, parse_nodes};
+pub(crate) use flags::refuse_within;
+pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
 
 use crate::command::compare::CompareOptions;
 use crate::command::goal;
 use crate::command::import::Import;
 use crate::command::rig::RigOptions;
+use crate::command::validate::ValidateOptions;
 use clap::{Args, Parser, Subcommand};
 
 /// Fits stress-strain curves of cloth to measurements and writes them for simulators.
@@ -47,6 +48,8 @@ pub enum Command {
     Fit(FitFlags),
     /// Fit three models in four variants, and rank them
     Compare(CompareOptions),
+    /// Try fitted curves on motions and samples that the fit did not see
+    Validate(ValidateOptions),
 }
 
 /// How results are told; every command has these flags.

@@ -1,12 +1,17 @@
-//! Figures of a fit, as SVG: `plots/*.svg`.
+//! Figures of a fit or a validation, as SVG: `plots/*.svg`.
 
 mod chart;
 mod forces;
+mod measure;
 mod stress;
 
 use cloth_fit::error::{Error, Result};
+use cloth_fit::frame::Kind;
 use cloth_fit::incremental::FitReport;
+use cloth_fit::report::SequenceReport;
 use cloth_fit::store::write_file;
+use cloth_fit::validation::{Validated, Validation};
+use cloth_sim::material::Model;
 use plotters::style::RGBColor;
 use std::path::Path;
 
@@ -30,14 +35,43 @@ pub fn write_plots(folder: &Path, report: &FitReport) -> Result<()> {
         }
     }
     let sequences = report.sequences();
-    let mut kinds: Vec<_> = sequences.iter().map(|(_, sequence)| sequence.kind).collect();
+    write_forces(&plots, report.model, &sequences.iter().map(|(_, sequence)| *sequence).collect::<Vec<_>>())
+}
+
+/// Writes a validation's figures into its folder: the forces of every kind of test, and measures of the whole.
+///
+/// # Errors
+/// What the operating system refuses.
+pub fn write_validation_plots(folder: &Path, model: Model, validation: &Validation) -> Result<()> {
+    let plots = folder.join("plots");
+    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
+    for Validated { report, measure } in &validation.sequences {
+        let figure = measure.as_ref().map(|(name, rows)| {
+            measure::draw(&format!("{}, {model}", report.name), report.kind, *name, rows)
+        });
+        if let Some(Ok(figure)) = figure {
+            write_file(&plots.join(format!("{}-measure.svg", report.name)), figure.as_bytes())?;
+        }
+    }
+    let sequences: Vec<&SequenceReport> = validation.sequences.iter().map(|s| &s.report).collect();
+    write_forces(&plots, model, &sequences)
+}
+
+/// A figure for each kind of test on which forces were measured.
+fn write_forces(plots: &Path, model: Model, sequences: &[&SequenceReport]) -> Result<()> {
+    let mut kinds: Vec<_> = sequences.iter().map(|sequence| sequence.kind).collect();
     kinds.sort();
     kinds.dedup();
     for kind in kinds {
-        let shown: Vec<_> = sequences.iter().map(|(_, s)| *s).filter(|s| s.kind == kind).collect();
-        if let Ok(figure) = forces::draw(&format!("{kind}, {}", report.model), kind, &shown) {
+        let shown: Vec<_> = sequences.iter().copied().filter(|s| s.kind == kind).collect();
+        if let Ok(figure) = forces::draw(&format!("{kind}, {model}"), kind, &shown) {
             write_file(&plots.join(format!("{kind}-force.svg")), figure.as_bytes())?;
         }
     }
     Ok(())
+}
+
+/// What a test's extension is.
+fn extension(kind: Kind) -> &'static str {
+    if kind == Kind::Shear { "shear angle [rad]" } else { "extension" }
 }

@@ -4,12 +4,14 @@ mod comparison;
 mod residuals;
 mod stage;
 mod summary;
+mod validation;
 mod verdict;
 
 pub use comparison::comparison;
 pub use residuals::residuals;
 pub use stage::stage;
 pub use summary::{missing, summary};
+pub use validation::validation;
 pub use verdict::verdict;
 
 use cloth_fit::report::StageReport;
@@ -32,6 +34,11 @@ fn unit(stage: &StageReport) -> (&'static str, f64) {
 /// A number, or a dash where there is none.
 fn cell(value: Option<f64>, digits: usize) -> String {
     value.map_or("-".into(), |value| format!("{value:.digits$}"))
+}
+
+/// A share in per cent, or a dash.
+fn percent(share: Option<f64>) -> String {
+    share.map_or("-".into(), |share| format!("{:.2} %", 100.0 * share))
 }
 
 /// The strains or curvatures between which a stage's curve was seen.

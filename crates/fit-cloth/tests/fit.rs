@@ -213,21 +213,3 @@ fn a_sequence_that_others_replace_can_be_left_out() {
     // Not every variant could spare the same sequences.
     assert_eq!(json["ranked_by"], "fit");
 }
-
-#[test]
-fn the_example_of_every_help_runs() {
-    let folder = tempfile::tempdir().unwrap();
-    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
-    let fixtures = fixtures.canonicalize().unwrap();
-    for command in ["stretch", "shear", "bend", "fit", "compare"] {
-        let [help, _] = said(&run(&[command, "--help"], folder.path()));
-        let examples: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  fit-cloth ")).collect();
-        assert!(!examples.is_empty() && help.contains("Example"), "{help}");
-        for (number, example) in examples.into_iter().enumerate() {
-            let example = example.replace("fixtures/", &format!("{}/", fixtures.display()));
-            let example = example.replace("--out out", &format!("--out {command}-{number}"));
-            let output = run(&example.split(' ').collect::<Vec<_>>(), folder.path());
-            assert!(output.status.success(), "{example}: {}", said(&output)[1]);
-        }
-    }
-}

@@ -62,6 +62,21 @@ pub enum Kind {
     CornerPull,
 }
 
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Self; 9] = [
+        Self::StretchWeft,
+        Self::StretchWarp,
+        Self::StretchBias,
+        Self::Shear,
+        Self::BendWeft,
+        Self::BendWarp,
+        Self::BendBias,
+        Self::ComplexShear,
+        Self::CornerPull,
+    ];
+}
+
 impl std::fmt::Display for Kind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(match self {

@@ -110,9 +110,10 @@ impl FitReport {
         self.knowledge.curves()
     }
 
-    /// Every stage came to its minimum.
+    /// Every curve that was observed came to its minimum.
     pub fn converged(&self) -> bool {
-        self.failures.is_empty() && self.last_stages().all(|stage| stage.converged)
+        let done = |stage: &StageReport| stage.converged || !stage.curve.observed;
+        self.failures.is_empty() && self.last_stages().all(done)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::frame::{Kind, MeasurementSet};
 use crate::replica::{Parts, Replica};
 use crate::report::SequenceReport;
 use crate::simulation::{Counters, DroppedFrame, Meter, Objective, Simulation, Task};
-use crate::stage::Settings;
+use crate::stage::{Settings, softest_bending};
 use crate::summary::sequence_reports;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
@@ -36,7 +36,7 @@ pub fn predict(
     settings: &Settings,
 ) -> Result<Prediction> {
     settings.validate()?;
-    let curves = &with_both_stretches(curves, settings)?;
+    let curves = &completed(curves, settings)?;
     let replicas: Vec<Replica> = set
         .sequences
         .iter()
@@ -62,33 +62,38 @@ pub fn predict(
     })
 }
 
-/// If only one of weft and warp is known, the other gets its mean stiffness: across a strip it hardly matters, but
-/// without any the sheet would have no shape.
-fn with_both_stretches(curves: &Curves, settings: &Settings) -> Result<Curves> {
-    let mut both = curves.clone();
-    let pair = [Component::StretchWeft, Component::StretchWarp];
-    for [known, missing] in [pair, [pair[1], pair[0]]] {
-        if let (Some(curve), None) = (curves.get(known), curves.get(missing)) {
-            let mean = curve.stiffnesses().iter().sum::<f64>() / curve.len() as f64;
-            let negative = settings.model.negative_strain(missing, settings.compression);
-            both.set(missing, StiffnessCurve::constant(mean, negative).map_err(mechanics)?);
+/// What is missing beside what is known: for one of weft and warp the other's mean stiffness, which across a strip hardly
+/// matters, but without any the sheet would have no shape; for a bending curve the softest of the others, without which the
+/// sheet would crumple along its lines.
+fn completed(curves: &Curves, settings: &Settings) -> Result<Curves> {
+    let mean = |curve: &StiffnessCurve| curve.stiffnesses().iter().sum::<f64>() / curve.len() as f64;
+    let [weft, warp] = [Component::StretchWeft, Component::StretchWarp];
+    let stretch = curves.get(weft).or(curves.get(warp)).map(mean);
+    let bending = softest_bending(curves);
+    let mut completed = curves.clone();
+    for component in Component::ALL.into_iter().filter(|&component| curves.get(component).is_none()) {
+        let other = if component.is_bending() { bending } else { stretch.filter(|_| component.is_stretch()) };
+        if let Some(stiffness) = other {
+            let negative = settings.model.negative_strain(component, settings.compression);
+            completed.set(component, StiffnessCurve::constant(stiffness, negative).map_err(mechanics)?);
         }
     }
-    Ok(both)
+    Ok(completed)
 }
 
 fn mechanics(source: cloth_sim::error::Error) -> Error {
     Error::Mechanics { context: "prediction".into(), source }
 }
 
-/// What a test's replica consists of: in strips pulled along their yarns shear and bending play no part.
+/// What a test's replica consists of: in strips pulled along their yarns shear and bending play no part. Without any
+/// bending curve a sheet between clips stays in its plane: in space it would crumple.
 pub(crate) fn parts(kind: Kind, set: &MeasurementSet, curves: &Curves, settings: &Settings) -> Parts {
     let stretches = matches!(kind, Kind::StretchWeft | Kind::StretchWarp);
     let components: Vec<Component> =
         curves.components().filter(|component| !stretches || component.is_stretch()).collect();
     Parts {
         model: settings.model,
-        flat: kind == Kind::StretchBias,
+        flat: kind == Kind::StretchBias || !components.iter().any(|component| component.is_bending()),
         components,
         areal_density: set.fabric.areal_density_kg_m2,
         nodes: settings.nodes,

@@ -36,6 +36,10 @@ pub struct Growth {
     pub stopped: String,
 }
 
+/// Where a constant stiffness twice as large would change less than this share of the residual, more points would only
+/// wander: ring-2 springs that lean on softer yarns.
+const FELT: f64 = 0.1;
+
 /// A fall of ‖r/σ‖² that two more points bring by chance once in a hundred. Where the noise is known, a gain above it
 /// counts however small its share is: beside a hysteresis of a fifth of the force, one per cent of the residual is much.
 const SIGNIFICANT: f64 = 9.21;
@@ -78,6 +82,11 @@ pub fn grow(
         let rms = level.rms;
         levels.push(level);
         curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
+        let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
+        if points == 1 && !felt {
+            let stopped = "one stiffness hardly changes what is compared".to_string();
+            return Ok(Growth { curve, outcome, domain, levels, stopped });
+        }
         let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
         let all = points >= most;
         let best = match kept {

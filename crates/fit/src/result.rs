@@ -1,6 +1,9 @@
-//! The folder that a fit writes: curve files, residuals, forces and `material.json`.
+//! The folders that a fit and a validation write: tables, and a JSON file with all there is to say.
 
 mod tables;
+mod validation;
+
+pub use validation::write_validation;
 
 use crate::error::{Error, Result};
 use crate::incremental::FitReport;
@@ -13,7 +16,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several, or what a
-/// comparison writes. Hidden files do not count.
+/// comparison or a validation writes. Hidden files do not count.
 pub fn check_output(folder: &Path) -> Result<()> {
     let refuse = |found: &str| {
         Err(Error::input(
@@ -37,17 +40,18 @@ pub fn check_output(folder: &Path) -> Result<()> {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
         entries.filter(|path| !name(path).starts_with('.')).collect()
     };
-    // Nothing but what a fit writes: what stands beside it must not go with it.
-    let is_result = |folder: &Path| {
-        folder.join("material.json").is_file()
-            && visible(folder).iter().all(|path| WRITTEN.contains(&&name(path)[..]))
+    // Nothing but what is written here: what stands beside it must not go with it.
+    let holds = |folder: &Path, main: &str, all: &[&str]| {
+        folder.join(main).is_file() && visible(folder).iter().all(|path| all.contains(&&name(path)[..]))
     };
+    let is_result = |folder: &Path| holds(folder, "material.json", &WRITTEN);
     let is_model = |folder: &PathBuf| {
         Model::ALL.iter().any(|model| model.to_string() == name(folder)) && is_result(folder)
     };
     let entries = visible(folder);
-    let is_comparison = entries.iter().all(|path| COMPARED.contains(&&name(path)[..]));
-    if is_comparison || is_result(folder) || entries.iter().all(is_model) {
+    let others = [("compare.json", &COMPARED[..]), ("validation.json", &VALIDATED)];
+    let is_other = others.iter().any(|(main, all)| holds(folder, main, all));
+    if is_other || is_result(folder) || entries.iter().all(is_model) {
         return Ok(());
     }
     refuse("a folder with other things in it")
@@ -57,7 +61,10 @@ pub fn check_output(folder: &Path) -> Result<()> {
 const WRITTEN: [&str; 5] = ["material.json", "curves", "plots", "residuals.csv", "forces.csv"];
 
 /// What stands in the folder of a [comparison](crate::compare).
-pub(crate) const COMPARED: [&str; 2] = ["compare.csv", "compare.json"];
+const COMPARED: [&str; 2] = ["compare.csv", "compare.json"];
+
+/// What stands in the folder of a [validation](crate::validation).
+const VALIDATED: [&str; 5] = ["validation.json", "validation.csv", "measures.csv", "forces.csv", "plots"];
 
 /// Writes the result of one model into a folder that exists. A curve that no frame sees has no file.
 ///
@@ -72,7 +79,8 @@ pub fn write_result(folder: &Path, report: &FitReport, material: &MaterialFile) 
             write_file(&curves.join(format!("{component}.csv")), table.as_bytes())?;
         }
     }
+    let forces = tables::force_table(report.sequences().into_iter().map(|(_, sequence)| sequence));
     write_file(&folder.join("residuals.csv"), tables::residual_table(report).as_bytes())?;
-    write_file(&folder.join("forces.csv"), tables::force_table(report).as_bytes())?;
+    write_file(&folder.join("forces.csv"), forces.as_bytes())?;
     write_file(&folder.join("material.json"), material.to_json().as_bytes())
 }

@@ -15,6 +15,7 @@ mod start;
 pub mod stretch;
 
 pub use course::{Plan, fit};
+pub(crate) use start::softest_bending;
 
 use crate::error::{Error, Result};
 use crate::gauss_newton::{Iteration, Options};

@@ -51,7 +51,7 @@ impl std::fmt::Display for Measure {
 }
 
 /// A measure in one frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct MeasureRow {
     /// Index of the frame in its sequence.
     pub frame: usize,
@@ -75,15 +75,20 @@ pub struct Validated {
 }
 
 impl Validated {
-    /// Root mean square difference of the measure as a share of the range that was measured.
+    /// Root mean square difference of the measure, in its unit.
+    pub fn measure_rms(&self) -> Option<f64> {
+        let (_, rows) = self.measure.as_ref()?;
+        let square: f64 = rows.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
+        Some((square / rows.len() as f64).sqrt())
+    }
+
+    /// The same as a share of the range that was measured.
     pub fn measure_share(&self) -> Option<f64> {
         let (_, rows) = self.measure.as_ref()?;
         let [low, high] = rows
             .iter()
             .fold([f64::MAX, f64::MIN], |[low, high], row| [low.min(row.measured), high.max(row.measured)]);
-        let square: f64 = rows.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
-        let rms = (square / rows.len() as f64).sqrt();
-        (high > low).then(|| rms / (high - low))
+        Some(self.measure_rms()? / (high - low)).filter(|_| high > low)
     }
 }
 
@@ -91,10 +96,29 @@ impl Validated {
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validation {
-    /// Every sequence of the set.
+    /// Every sequence of the kinds asked for that has a frame with an equilibrium.
     pub sequences: Vec<Validated>,
     /// Frames without an equilibrium and what it all cost.
     pub prediction: Prediction,
+}
+
+impl Validation {
+    /// Frames of a sequence that take no part: at rest, or without an equilibrium.
+    pub fn left_out(&self, sequence: &SequenceReport) -> usize {
+        sequence.at_rest + self.without_equilibrium(&sequence.name)
+    }
+
+    /// Names of the sequences of which no frame has an equilibrium, with the number of their frames.
+    pub fn lost(&self) -> Vec<(&str, usize)> {
+        let mut lost: Vec<&str> = self.prediction.dropped.iter().map(|frame| &frame.sequence[..]).collect();
+        lost.dedup();
+        lost.retain(|name| self.sequences.iter().all(|sequence| sequence.report.name != *name));
+        lost.into_iter().map(|name| (name, self.without_equilibrium(name))).collect()
+    }
+
+    fn without_equilibrium(&self, name: &str) -> usize {
+        self.prediction.dropped.iter().filter(|frame| frame.sequence == name).count()
+    }
 }
 
 /// Predicts sequences of a set, and measures them as wholes.

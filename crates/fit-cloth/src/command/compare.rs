@@ -2,7 +2,7 @@
 
 use super::{Outcome, fit, tell, warn};
 use crate::failure::Failure;
-use crate::options::{SetFlags, Telling};
+use crate::options::{CurveFlags, SetFlags, Telling};
 use crate::progress::Progress;
 use crate::text;
 use clap::Args;
@@ -24,9 +24,12 @@ corner-pull, which no fit sees; else that on sequences left out one at a time; e
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct CompareOptions {
-    /// How to fit.
+    /// On what, and where to.
     #[command(flatten)]
     pub on: SetFlags,
+    /// How to fit.
+    #[command(flatten)]
+    pub how: CurveFlags,
     /// Fit again without each sequence in turn, where others show its curves, and predict it
     #[arg(long)]
     pub leave_one_out: bool,
@@ -38,14 +41,14 @@ pub struct CompareOptions {
 /// Bad input, nothing that any model can fit, or an output folder that is no former result; what the operating system
 /// refuses.
 pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
-    let (set, folder) = options.on.open()?;
+    let (set, folder) = options.on.open("-compare")?;
     let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).copied().collect();
     if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
         return Err(fit::nothing(&options.on.set, &set, &kinds));
     }
     let mut rows = Vec::new();
     let mut refused = None;
-    for settings in compare::contestants(&options.on.settings()) {
+    for settings in compare::contestants(&options.how.settings(&options.on)) {
         let name = format!("{}, {}", settings.model, settings.variant);
         let progress = Progress::new(&name, !telling.quiet);
         let row = compare::run(&set, &settings, options.leave_one_out, &mut progress.watch());

@@ -3,7 +3,7 @@
 use super::goal::Goal;
 use super::{Outcome, warn};
 use crate::failure::Failure;
-use crate::options::{FitFlags, Telling, is_inside};
+use crate::options::{FitFlags, Telling, refuse_within};
 use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::text;
@@ -35,7 +35,7 @@ pub fn run(
     telling: Telling,
     output: &mut impl Write,
 ) -> Result<Outcome, Failure> {
-    let (set, folder) = flags.on.open()?;
+    let (set, folder) = flags.on.open("")?;
     let models = flags.model.models();
     let given = flags.known.as_deref().map(|path| read_known(path, &folder, flags)).transpose()?;
     let (mut results, mut failures) = (Vec::new(), Vec::new());
@@ -75,10 +75,7 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     let refuse = |field: &str, found: String, expected: String| {
         Err(Failure::from(Error::input(path, None, field, found, expected)))
     };
-    if is_inside(path, folder) {
-        let found = format!("a file in {}, which will be replaced", folder.display());
-        return refuse("--known", found, "another --out".into());
-    }
+    refuse_within("--known", path, folder)?;
     let file = MaterialFile::read(path)?;
     for settings in flags.model.models().into_iter().map(|model| flags.settings(model)) {
         if file.model != settings.model {

@@ -33,7 +33,7 @@ With --known FILE the stretch and shear curves of a former fit are taken from it
 pub const FIT_EXAMPLE: &str = "\
 Example:
   fit-cloth fit fixtures/cotton-denim --out out
-  fit-cloth fit fixtures/cotton-denim --variant isotropic --robust --verbose --out out
+  fit-cloth fit fixtures/cotton-denim --variant linear --robust --verbose --out out
 
 Fits stretch, shear and bending in this order, then shear and bending once more. What a set lacks is not fitted, and a
 warning says so.";

@@ -2,7 +2,7 @@
 
 use super::{Outcome, tell};
 use crate::failure::Failure;
-use crate::options::{Telling, parse_nodes};
+use crate::options::{Telling, parse_kind, parse_nodes};
 use crate::progress::Progress;
 use clap::Args;
 use cloth_fit::error::Error;
@@ -42,7 +42,7 @@ pub struct RigOptions {
     pub out: PathBuf,
     /// The tests to make [default: all]: bend-bias, bend-warp, bend-weft, complex-shear, corner-pull, shear,
     /// stretch-warp, stretch-weft
-    #[arg(long, value_delimiter = ',', value_parser = parse_kind, hide_default_value = true,
+    #[arg(long, value_delimiter = ',', value_parser = parse_test, hide_default_value = true,
         default_values_t = KINDS)]
     pub sequences: Vec<Kind>,
     /// Which sample of the fabric: 1 is the fabric itself, in any other each curve is stiffer or softer as a
@@ -119,7 +119,7 @@ fn refuse_measured(folder: &Path) -> Result<(), Failure> {
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .filter(|name| !name.starts_with('.'))
         .collect();
-    let known = |name: &String| name == "fabric.toml" || parse_kind(name).is_ok();
+    let known = |name: &String| name == "fabric.toml" || parse_test(name).is_ok();
     let from_rig = || {
         read_fabric(folder)
             .is_ok_and(|fabric| fabric.source.is_some_and(|source| source.starts_with("virtual rig")))
@@ -131,11 +131,9 @@ fn refuse_measured(folder: &Path) -> Result<(), Failure> {
     Err(Error::input(folder, None, "--out", "a folder with other things in it", expected).into())
 }
 
-/// A test by its name.
-fn parse_kind(name: &str) -> Result<Kind, String> {
-    let names = || KINDS.map(|kind| kind.to_string()).join(", ");
-    let found = KINDS.into_iter().find(|kind| kind.to_string() == name);
-    found.ok_or_else(|| format!("{name}: expected one of {}", names()))
+/// A test of the rig by its name.
+fn parse_test(name: &str) -> Result<Kind, String> {
+    parse_kind(name, &KINDS)
 }
 
 fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {

@@ -4,7 +4,7 @@ use super::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
 use crate::failure::Failure;
 use clap::Args;
 use cloth_fit::error::Error;
-use cloth_fit::frame::MeasurementSet;
+use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::io::read_set;
 use cloth_fit::result::check_output;
 use cloth_fit::stage::Settings;
@@ -16,12 +16,21 @@ use std::path::{Path, PathBuf};
 pub struct SetFlags {
     /// The measurement set
     pub set: PathBuf,
-    /// Where to write; a former result there is replaced [default: out/ and the set's name]
+    /// Where to write; a former result there is replaced [default: out/ and the set's name; compare and validate add
+    /// theirs]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Columns and rows of the simulation [default: as many cells as 25x25 nodes have, near square]
     #[arg(long, value_parser = parse_nodes)]
     pub nodes: Option<[usize; 2]>,
+    /// Threads; the result is the same on any number [default: one a core]
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+/// How curves are fitted.
+#[derive(Debug, Clone, Args)]
+pub struct CurveFlags {
     /// Most control points of a curve
     #[arg(long, default_value_t = 5)]
     pub points: usize,
@@ -34,9 +43,6 @@ pub struct SetFlags {
     /// Let residuals above LIMIT times the noise count less; --robust alone means 3
     #[arg(long, value_name = "LIMIT", num_args = 0..=1, require_equals = true, default_missing_value = "3")]
     pub robust: Option<f64>,
-    /// Threads; the result is the same on any number [default: one a core]
-    #[arg(long)]
-    pub threads: Option<usize>,
 }
 
 /// What every fit can be told.
@@ -45,6 +51,9 @@ pub struct FitFlags {
     /// What every command on a set can be told.
     #[command(flatten)]
     pub on: SetFlags,
+    /// How curves are fitted.
+    #[command(flatten)]
+    pub how: CurveFlags,
     /// The cloth model
     #[arg(long, value_enum, default_value_t = ModelChoice::Stvk)]
     pub model: ModelChoice,
@@ -59,32 +68,24 @@ pub struct FitFlags {
 impl SetFlags {
     /// Reads the set, once the folder to write into is known to be one that may be written.
     ///
+    /// * `suffix` — of that folder, if none was named: so that one command does not replace what another wrote
+    ///
     /// # Errors
     /// A bad set, or an output folder that is no former result; threads that cannot be.
-    pub fn open(&self) -> Result<(MeasurementSet, PathBuf), Failure> {
-        let folder = self.output_folder();
+    pub fn open(&self, suffix: &str) -> Result<(MeasurementSet, PathBuf), Failure> {
+        let folder = self.output_folder(suffix);
         self.use_threads()?;
         check_output(&folder)?;
         self.refuse_inside(&folder)?;
         Ok((read_set(&self.set)?, folder))
     }
 
-    /// The settings of a fit; model and variant are the default's.
-    pub fn settings(&self) -> Settings {
-        Settings {
-            nodes: self.nodes,
-            points: self.points,
-            constraints: self.constraints.into(),
-            compression: self.compression.into(),
-            robust: self.robust,
-            ..Settings::default()
-        }
-    }
-
-    fn output_folder(&self) -> PathBuf {
+    fn output_folder(&self, suffix: &str) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             let name = self.set.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_os_string()));
-            PathBuf::from("out").join(name.unwrap_or_else(|| "fit".into()))
+            let mut name = name.unwrap_or_else(|| "fit".into());
+            name.push(suffix);
+            PathBuf::from("out").join(name)
         })
     }
 
@@ -110,17 +111,61 @@ impl SetFlags {
     }
 }
 
-impl FitFlags {
-    /// The settings of one model's fit.
-    pub fn settings(&self, model: Model) -> Settings {
-        Settings { model, variant: self.variant.into(), ..self.on.settings() }
+impl CurveFlags {
+    /// The settings of a fit; model and variant are the default's.
+    pub fn settings(&self, on: &SetFlags) -> Settings {
+        Settings {
+            nodes: on.nodes,
+            points: self.points,
+            constraints: self.constraints.into(),
+            compression: self.compression.into(),
+            robust: self.robust,
+            ..Settings::default()
+        }
     }
 }
 
+impl FitFlags {
+    /// The settings of one model's fit.
+    pub fn settings(&self, model: Model) -> Settings {
+        Settings { model, variant: self.variant.into(), ..self.how.settings(&self.on) }
+    }
+}
+
+/// Refuses to read a file that the result would replace.
+///
+/// # Errors
+/// A file in the folder.
+pub(crate) fn refuse_within(flag: &str, path: &Path, folder: &Path) -> Result<(), Failure> {
+    if is_inside(path, folder) {
+        let found = format!("a file in {}, which will be replaced", folder.display());
+        return Err(Error::input(path, None, flag, found, "another --out").into());
+    }
+    Ok(())
+}
+
 /// True if a path leads into a folder, or is that folder; links are followed where they exist.
-pub(crate) fn is_inside(path: &Path, folder: &Path) -> bool {
-    let absolute = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path));
-    matches!((absolute(path), absolute(folder)), (Ok(path), Ok(folder)) if path.starts_with(&folder))
+fn is_inside(path: &Path, folder: &Path) -> bool {
+    matches!((resolved(path), resolved(folder)), (Some(path), Some(folder)) if path.starts_with(&folder))
+}
+
+/// A path without links and dots, as far as it exists.
+fn resolved(path: &Path) -> Option<PathBuf> {
+    let path = std::path::absolute(path).ok()?;
+    path.ancestors().find_map(|ancestor| {
+        let real = ancestor.canonicalize().ok()?;
+        Some(real.join(path.strip_prefix(ancestor).ok()?))
+    })
+}
+
+/// One of some kinds of test by its name.
+///
+/// # Errors
+/// Another name.
+pub fn parse_kind(name: &str, among: &[Kind]) -> Result<Kind, String> {
+    let names = || among.iter().map(|kind| kind.to_string()).collect::<Vec<_>>().join(", ");
+    let found = among.iter().find(|kind| kind.to_string() == name);
+    found.copied().ok_or_else(|| format!("{name}: expected one of {}", names()))
 }
 
 /// Columns and rows, as in 25x25.

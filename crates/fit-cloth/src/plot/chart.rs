@@ -77,16 +77,21 @@ impl<'a, 'b: 'a> Chart<'a, 'b> {
         Ok(())
     }
 
-    /// A line.
+    /// A line through points in order; it is broken where the number of one is not that after the last.
     pub(super) fn line(
         &mut self,
-        points: impl IntoIterator<Item = (f64, f64)>,
+        points: impl IntoIterator<Item = (usize, f64, f64)>,
         colour: RGBColor,
         label: &str,
     ) -> Drawn<()> {
         let style = colour.stroke_width(4);
+        let points: Vec<_> = points.into_iter().collect();
+        // Sequences of one kind follow one another, each from its first frame.
+        let pieces = points.chunk_by(|a, b| b.0 == a.0 + 1);
+        let pieces = pieces.map(|piece| piece.iter().map(|&(_, x, y)| (x, y)).collect::<Vec<_>>());
+        let pieces = pieces.map(|piece| PathElement::new(piece, style));
         self.0
-            .draw_series(LineSeries::new(points, style))?
+            .draw_series(pieces)?
             .label(label)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 36, y)], style));
         Ok(())

@@ -1,7 +1,7 @@
 //! Force against extension or shear angle: measured on loading and unloading, and the model, one clip a sequence.
 
 use super::chart::{Axes, Drawn, figure};
-use super::{LOADING, MODEL, UNLOADING};
+use super::{LOADING, MODEL, UNLOADING, extension};
 use cloth_fit::frame::{Kind, Phase};
 use cloth_fit::report::{ForceRow, SequenceReport};
 use plotters::style::Color;
@@ -17,12 +17,10 @@ pub(super) fn draw(title: &str, kind: Kind, sequences: &[&SequenceReport]) -> Dr
     }
     let widest = rows.iter().map(|row| row.extension).fold(0.0, f64::max);
     let highest = rows.iter().map(|row| row.measured.abs().max(row.simulated.abs())).fold(0.0, f64::max);
-    let x = if kind == Kind::Shear { "shear angle [rad]" } else { "extension" };
-    let axes = Axes { title, x: (x, 0.0..widest * 1.03), y: ("clip force [N]", 0.0..highest * 1.06) };
+    let axes =
+        Axes { title, x: (extension(kind), 0.0..widest * 1.03), y: ("clip force [N]", 0.0..highest * 1.06) };
     figure(axes, |chart| {
-        let mut simulated: Vec<_> = rows.iter().map(|row| (row.extension, row.simulated.abs())).collect();
-        simulated.sort_by(|a, b| a.0.total_cmp(&b.0));
-        chart.line(simulated, MODEL, "model")?;
+        chart.line(rows.iter().map(|row| (row.frame, row.extension, row.simulated.abs())), MODEL, "model")?;
         let measured = [(false, "measured, loading", LOADING), (true, "measured, unloading", UNLOADING)];
         for (unloading, label, colour) in measured {
             let branch = rows.iter().filter(|row| (row.phase == Phase::Unloading) == unloading);
@@ -35,9 +33,14 @@ pub(super) fn draw(title: &str, kind: Kind, sequences: &[&SequenceReport]) -> Dr
     })
 }
 
-/// The rows of the force component that is largest: the pull, on the clip where it was measured.
+/// The rows of the force component that is largest: the pull, on the clip where it was measured. Its direction may turn
+/// with the clip; its place among the clip's components stays.
 fn pulled_rows(rows: &[ForceRow]) -> Vec<&ForceRow> {
-    let largest = rows.iter().max_by(|a, b| a.measured.abs().total_cmp(&b.measured.abs()));
-    let same = |row: &&ForceRow| largest.is_some_and(|l| row.clip == l.clip && row.direction == l.direction);
-    rows.iter().filter(same).collect()
+    let place = |index: usize| {
+        let own = |row: &&ForceRow| row.frame == rows[index].frame && row.clip == rows[index].clip;
+        (rows[index].clip, rows[..index].iter().filter(own).count())
+    };
+    let size = |index: &usize| rows[*index].measured.abs();
+    let largest = (0..rows.len()).max_by(|a, b| size(a).total_cmp(&size(b))).map(place);
+    (0..rows.len()).filter(|&index| Some(place(index)) == largest).map(|index| &rows[index]).collect()
 }

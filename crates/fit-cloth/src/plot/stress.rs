@@ -22,7 +22,8 @@ pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
         let upper = samples.iter().filter_map(|s| s.band.map(|[_, high]| (s.strain, high)));
         let lower = samples.iter().rev().filter_map(|s| s.band.map(|[low, _]| (s.strain, low)));
         chart.band(upper.chain(lower).collect(), MODEL)?;
-        chart.line(samples.iter().map(|s| (s.strain, s.stress)), MODEL, "fit, 95 % band")?;
+        let curve = samples.iter().enumerate().map(|(i, s)| (i, s.strain, s.stress));
+        chart.line(curve, MODEL, "fit, 95 % band")?;
         // The last may lie beyond what was seen.
         let points = stage.curve.points.iter().filter(|point| point.strain <= high * 1.03);
         chart.dots(points.map(|point| (point.strain, point.stress)), (8, MODEL.filled()), "control points")

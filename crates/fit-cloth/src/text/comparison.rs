@@ -1,6 +1,6 @@
 //! Models and variants side by side.
 
-use super::list;
+use super::{list, percent};
 use cloth_fit::compare::{Comparison, Criterion, Distance, Row};
 use std::fmt::Write;
 
@@ -62,10 +62,6 @@ fn left_out(row: &Row) -> String {
         0 => percent(row.leave_one_out),
         _ => format!("{} ({lost} lost)", percent(row.leave_one_out)),
     }
-}
-
-fn percent(share: Option<f64>) -> String {
-    share.map_or("-".into(), |share| format!("{:.2} %", 100.0 * share))
 }
 
 fn ranking(criterion: Criterion) -> String {

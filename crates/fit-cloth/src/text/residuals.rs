@@ -1,6 +1,6 @@
 //! How every sequence was met.
 
-use super::cell;
+use super::{cell, percent};
 use cloth_fit::incremental::FitReport;
 use std::fmt::Write;
 
@@ -13,7 +13,7 @@ pub fn residuals(report: &FitReport) -> String {
         "sequence"
     );
     for (stage, s) in sequences {
-        let share = s.force_rms.map(|rms| 100.0 * rms / s.force_largest.max(f64::MIN_POSITIVE));
+        let share = s.force_rms.map(|rms| rms / s.force_largest.max(f64::MIN_POSITIVE));
         let _ = writeln!(
             text,
             "{:width$}  {:6}  {:8}  {:18}  {:7}  {:>13}  {:>10}  {:>17}  {:>7}  {:>9}",
@@ -23,7 +23,7 @@ pub fn residuals(report: &FitReport) -> String {
             s.multi_stable.len(),
             format!("{}x{}", s.nodes[0], s.nodes[1]),
             cell(s.force_rms, 5),
-            share.map_or("-".into(), |share| format!("{share:.2} %")),
+            percent(share),
             cell(s.position_rms.map(|rms| 1e3 * rms), 4),
             cell(s.hysteresis.map(|h| h.loading), 3),
             cell(s.hysteresis.map(|h| h.unloading), 3),

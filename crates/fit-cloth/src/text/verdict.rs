@@ -43,6 +43,9 @@ fn limit(stage: &StageReport) -> String {
 
 /// What to measure next.
 fn next(stage: &StageReport) -> String {
+    if !stage.curve.observed {
+        return "it takes another test to see this curve".into();
+    }
     let samples = &stage.curve.samples;
     let widths = samples.iter().filter_map(|s| s.band.map(|[low, high]| (s.strain, high - low)));
     let Some((place, width)) = widths.max_by(|a, b| a.1.total_cmp(&b.1)) else {

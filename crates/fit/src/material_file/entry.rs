@@ -171,7 +171,7 @@ pub struct ResidualEntry {
 }
 
 impl ResidualEntry {
-    pub(super) fn new(sequence: &SequenceReport) -> Self {
+    pub(crate) fn new(sequence: &SequenceReport) -> Self {
         Self {
             sequence: sequence.name.clone(),
             kind: sequence.kind,

@@ -1,7 +1,7 @@
 //! The tables of a result folder.
 
 use crate::incremental::FitReport;
-use crate::report::{Sample, StageReport};
+use crate::report::{Sample, SequenceReport, StageReport};
 use std::fmt::Write;
 
 /// 201 rows; the band's columns are absent where the data do not see all of the curve.
@@ -29,7 +29,6 @@ pub(super) fn residual_table(report: &FitReport) -> String {
     let mut table = String::from(
         "sequence,kind,rms_force_n,largest_force_n,rms_position_m,frames,frames_left_out,iterations,seconds\n",
     );
-    let cell = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
     for (stage, sequence) in report.sequences() {
         let iterations: usize = stage.levels.iter().map(|level| level.iterations.len()).sum();
         let _ = writeln!(
@@ -48,10 +47,15 @@ pub(super) fn residual_table(report: &FitReport) -> String {
     table
 }
 
+/// A number, or nothing.
+pub(super) fn cell(value: Option<f64>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
+}
+
 /// Every measured force component (its direction x, y, z in the specimen's frame) beside its simulation, for plots.
-pub(super) fn force_table(report: &FitReport) -> String {
+pub(super) fn force_table<'r>(sequences: impl Iterator<Item = &'r SequenceReport>) -> String {
     let mut table = String::from("sequence,frame,clip,x,y,z,extension,measured_n,simulated_n\n");
-    for (_, sequence) in report.sequences() {
+    for sequence in sequences {
         for row in &sequence.forces {
             let _ = writeln!(
                 table,

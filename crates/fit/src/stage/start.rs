@@ -10,7 +10,7 @@ use crate::refine::domain;
 use crate::replica::Replica;
 use crate::simulation::Objective;
 use cloth_sim::curve::{StiffnessCurve, equidistant};
-use cloth_sim::material::{Component, Curves};
+use cloth_sim::material::{Component, Curves, Model};
 
 /// Where a stage starts.
 pub(super) struct Start {
@@ -36,7 +36,9 @@ pub(super) fn start(
 ) -> Result<Start> {
     let stiffness = match plan.objective {
         Objective::Forces => from_forces(plan, replicas, settings)?,
-        Objective::Positions => from_shapes(plan, replicas)?,
+        Objective::Positions => {
+            from_shapes(plan, replicas)?.min(most_that_bends(plan, knowledge.curves(), settings))
+        }
     };
     let mut known = knowledge.without(&plan.fitted).curves().clone();
     let mut assumed = Vec::new();
@@ -45,7 +47,7 @@ pub(super) fn start(
             continue;
         }
         let negative = settings.model.negative_strain(component, settings.compression);
-        let constant = assumption(plan, replicas, &known, component, stiffness);
+        let constant = assumption(plan, replicas, component, stiffness, knowledge.curves());
         known.set(component, StiffnessCurve::constant(constant, negative).map_err(mechanics(plan))?);
         assumed.push(component);
     }
@@ -60,19 +62,16 @@ pub(super) fn start(
 fn assumption(
     plan: &Plan,
     replicas: &[Replica],
-    known: &Curves,
     component: Component,
     stiffness: f64,
+    known: &Curves,
 ) -> f64 {
-    // Across a strip, and for the other bending where one is fitted: as the fitted one. It hardly matters.
-    if component.is_bending() && plan.fitted[0].is_bending() || plan.fitted[0].is_stretch() {
-        return stiffness;
+    if component.is_bending() && !plan.fitted[0].is_bending() {
+        return softest_bending(known).unwrap_or(0.0);
     }
-    if component.is_bending() {
-        let bending = Component::ALL.into_iter().filter(|other| other.is_bending());
-        let others: Vec<f64> =
-            bending.filter_map(|other| known.get(other)).map(|curve| curve.stiffnesses()[0]).collect();
-        return others.iter().sum::<f64>() / others.len().max(1) as f64;
+    // Across a strip, and for the other bending: as the fitted one. It hardly matters.
+    if component.is_bending() || plan.fitted[0].is_stretch() {
+        return stiffness;
     }
     // A membrane that hardly gives under its own weight, or under the forces of shear.
     let weight = replicas
@@ -82,6 +81,14 @@ fn assumption(
     let sheared = if plan.fitted[0] == Component::Shear { 100.0 * stiffness } else { 0.0 };
     let stretch = f64::max(2000.0 * weight, sheared);
     if component.is_stretch() { stretch } else { 0.1 * stretch }
+}
+
+/// The smallest stiffness of the bending curves that are known, which stands for those that are not.
+pub(crate) fn softest_bending(known: &Curves) -> Option<f64> {
+    let bends = known.components().filter(|component| component.is_bending());
+    let stiffnesses =
+        bends.filter_map(|component| known.get(component)).flat_map(StiffnessCurve::stiffnesses);
+    stiffnesses.copied().reduce(f64::min)
 }
 
 /// The mean stiffness that balances the clip forces on the blended shapes, if the fitted curve bore all the load.
@@ -130,6 +137,14 @@ fn blended_range(plan: &Plan, replicas: &[Replica]) -> f64 {
             plan.fitted.iter().flat_map(move |&c| replica.cloth(frame).strains(c, &frame.start))
         })
         .fold(f64::MIN_POSITIVE, |largest, [strain, _]| largest.max(if odd { strain.abs() } else { strain }))
+}
+
+/// Ring-2 springs lean on the yarns: where they are stiffer, the yarns stretch instead, and bending gets no stiffer.
+fn most_that_bends(plan: &Plan, known: &Curves, settings: &Settings) -> f64 {
+    let yarns = plan.components.iter().filter(|component| component.is_stretch());
+    let stiffnesses = yarns.filter_map(|&component| Some(known.get(component)?.stiffnesses()[0]));
+    let largest = stiffnesses.fold(0.0, f64::max);
+    if settings.model == Model::Springs && largest > 0.0 { largest } else { f64::INFINITY }
 }
 
 /// The median over all frames of the stiffness that Peirce's formula gives.

@@ -1,0 +1,127 @@
+//! `fit-cloth validate`: fitted curves on motions and samples that the fit did not see.
+
+use super::{Outcome, fit, tell};
+use crate::failure::Failure;
+use crate::options::{SetFlags, Telling, parse_kind, refuse_within};
+use crate::plot::write_validation_plots;
+use crate::progress::Progress;
+use crate::text;
+use clap::Args;
+use cloth_fit::compare::VALIDATION;
+use cloth_fit::error::Error;
+use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_fit::material_file::MaterialFile;
+use cloth_fit::result::write_validation;
+use cloth_fit::stage::Settings;
+use cloth_fit::store::replace_folder;
+use cloth_fit::validation::validate;
+use cloth_sim::material::{Component, Curves};
+use serde_json::Value;
+use std::io::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "\
+Example:
+  fit-cloth fit fixtures/cotton-denim --out out/fit
+  fit-cloth validate fixtures/cotton-denim --material out/fit/material.json --out out/motions
+
+A second sample of the same fabric:
+  fit-cloth rig --fabric cotton-denim --sample 2 --sequences complex-shear --out sets/second
+  fit-cloth validate sets/second --material out/fit/material.json --all --out out/second
+
+Writes validation.json, validation.csv, measures.csv, forces.csv and plots/*.svg.";
+
+/// `fit-cloth validate`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct ValidateOptions {
+    /// On what, and where to.
+    #[command(flatten)]
+    pub on: SetFlags,
+    /// The material.json whose curves are tried; the grid is that of its fit, unless --nodes says otherwise
+    #[arg(long, value_name = "FILE")]
+    pub material: PathBuf,
+    /// The tests to try them on [default: complex-shear and corner-pull, which no fit uses; all, if a set has neither]
+    #[arg(long, value_delimiter = ',', value_parser = parse_any_kind, value_name = "KIND")]
+    pub kinds: Vec<Kind>,
+    /// Try them on all tests of the set
+    #[arg(long, conflicts_with = "kinds")]
+    pub all: bool,
+}
+
+/// Predicts and compares.
+///
+/// # Errors
+/// Bad input, a set without the tests asked for, or an output folder that is no former result; what the operating system
+/// refuses.
+pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let (set, folder) = options.on.open("-validation")?;
+    refuse_within("--material", &options.material, &folder)?;
+    let material = MaterialFile::read(&options.material)?;
+    let curves = curves(options, &material)?;
+    let kinds = options.kinds_of(&set);
+    if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
+        return Err(fit::nothing(&options.on.set, &set, &kinds));
+    }
+    let progress = Progress::new("validating", !telling.quiet);
+    let validation = validate(&set, &kinds, &curves, &options.settings(&material));
+    progress.finish();
+    let validation = validation?;
+    let mut json = String::new();
+    replace_folder(&folder, |temporary| {
+        json = write_validation(temporary, &set, &material, &validation)?;
+        write_validation_plots(temporary, material.model, &validation)
+    })?;
+    let text = text::validation(&set, &material, &validation);
+    let text = format!("{text}\nWritten to {}", folder.display());
+    tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
+    Ok(if validation.lost().is_empty() { Outcome::Done } else { Outcome::NotConverged })
+}
+
+/// The observed curves; without one of stretch a sheet has no shape to predict.
+fn curves(options: &ValidateOptions, material: &MaterialFile) -> Result<Curves, Failure> {
+    let curves = material.curves()?;
+    if curves.components().any(Component::is_stretch) {
+        return Ok(curves);
+    }
+    let (found, expected) = ("no stretch curve", "that of weft or warp at least");
+    Err(Error::input(&options.material, None, "curves", found, expected).into())
+}
+
+impl ValidateOptions {
+    /// The tests to try the curves on.
+    fn kinds_of(&self, set: &MeasurementSet) -> Vec<Kind> {
+        let has = |kind: &Kind| set.sequences.iter().any(|sequence| sequence.kind == *kind);
+        if !self.kinds.is_empty() {
+            self.kinds.clone()
+        } else if self.all || !VALIDATION.iter().any(has) {
+            Kind::ALL.to_vec()
+        } else {
+            VALIDATION.to_vec()
+        }
+    }
+
+    /// Model and grid of the fit that the curves come from.
+    fn settings(&self, material: &MaterialFile) -> Settings {
+        let defaults = Settings::default();
+        Settings {
+            model: material.model,
+            variant: material.variant,
+            compression: material.compression,
+            diagonals: material.provenance.diagonals.unwrap_or(defaults.diagonals),
+            nodes: self.on.nodes.or_else(|| nodes_of_fit(material)),
+            ..defaults
+        }
+    }
+}
+
+/// Columns and rows of the fit, if all its sequences had the same.
+fn nodes_of_fit(material: &MaterialFile) -> Option<[usize; 2]> {
+    let mut all = material.provenance.nodes.values();
+    let first = *all.next()?;
+    all.all(|nodes| *nodes == first).then_some(first)
+}
+
+fn parse_any_kind(name: &str) -> Result<Kind, String> {
+    parse_kind(name, &Kind::ALL)
+}

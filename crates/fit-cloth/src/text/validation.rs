@@ -1,0 +1,88 @@
+//! How curves meet tests that their fit did not see.
+
+use super::{cell, list, percent};
+use cloth_fit::frame::MeasurementSet;
+use cloth_fit::material_file::MaterialFile;
+use cloth_fit::validation::{Validated, Validation};
+use std::fmt::Write;
+
+/// One row a sequence, frames of several equilibria, and a verdict.
+pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) -> String {
+    let (of, on) = (&material.fabric.name, &set.fabric.name);
+    let mut text = format!("curves of {of} ({}) on tests of {on}\n\n{}", material.model, table(validation));
+    for Validated { report, .. } in &validation.sequences {
+        if !report.multi_stable.is_empty() {
+            let frames = list(&report.multi_stable);
+            let _ = writeln!(text, "\nSeveral equilibria in {}: frames {frames}", report.name);
+        }
+    }
+    format!("{text}\n{}\n", verdict(material, validation))
+}
+
+fn table(validation: &Validation) -> String {
+    let lost = validation.lost();
+    let names =
+        validation.sequences.iter().map(|s| &s.report.name[..]).chain(lost.iter().map(|(name, _)| *name));
+    let width = names.map(|name| name.chars().count()).max().unwrap_or(0).max(8);
+    let mut text = format!(
+        "{:width$}  frames  left out  several equilibria  rms force [N]  of largest  rms position [mm]  {:27}  {:>14}  {:>12}\n",
+        "sequence", "measure", "rms difference", "of its range"
+    );
+    for sequence in &validation.sequences {
+        let report = &sequence.report;
+        let of_largest = report.force_rms.map(|rms| rms / report.force_largest.max(f64::MIN_POSITIVE));
+        let measure = sequence.measure.as_ref().map(|(measure, _)| *measure);
+        let rms =
+            measure.zip(sequence.measure_rms()).map(|(measure, rms)| format!("{rms:.3e} {}", measure.unit()));
+        let _ = writeln!(
+            text,
+            "{:width$}  {:6}  {:8}  {:18}  {:>13}  {:>10}  {:>17}  {:27}  {:>14}  {:>12}",
+            report.name,
+            report.frames,
+            validation.left_out(report),
+            report.multi_stable.len(),
+            cell(report.force_rms, 5),
+            percent(of_largest),
+            cell(report.position_rms.map(|rms| 1e3 * rms), 4),
+            measure.map_or("-".into(), |measure| measure.to_string()),
+            rms.unwrap_or("-".into()),
+            percent(sequence.measure_share()),
+        );
+    }
+    for (name, frames) in lost {
+        let _ = writeln!(text, "{name:width$}  {:6}  {frames:8}  no frame has an equilibrium", 0);
+    }
+    text
+}
+
+/// How well the curves do, in one sentence.
+fn verdict(material: &MaterialFile, validation: &Validation) -> String {
+    let met = list(validation.sequences.iter().filter_map(meets));
+    let lost: Vec<&str> = validation.lost().into_iter().map(|(name, _)| name).collect();
+    let mut text = format!("Root mean square, the curves of {}", material.fabric.name);
+    let _ = match met.is_empty() {
+        true => write!(text, " meet nothing that was measured"),
+        false => write!(text, " meet {met}"),
+    };
+    if validation.sequences.iter().any(|sequence| !sequence.report.multi_stable.is_empty()) {
+        let _ = write!(text, "; positions of frames with several equilibria do not count");
+    }
+    if !lost.is_empty() {
+        let _ = write!(text, "; of {} there is no equilibrium to compare", list(lost));
+    }
+    text + "."
+}
+
+/// What says most of a sequence: its measure, else its forces, else its shapes.
+fn meets(sequence: &Validated) -> Option<String> {
+    let report = &sequence.report;
+    let name = &report.name;
+    if let Some(((measure, _), share)) = sequence.measure.as_ref().zip(sequence.measure_share()) {
+        return Some(format!("the {measure} of {name} within {} of its range", percent(Some(share))));
+    }
+    if let Some(rms) = report.force_rms.filter(|_| report.force_largest > 0.0) {
+        let share = percent(Some(rms / report.force_largest));
+        return Some(format!("the forces of {name} within {share} of the largest"));
+    }
+    report.position_rms.map(|rms| format!("the shapes of {name} within {:.3} mm", 1e3 * rms))
+}

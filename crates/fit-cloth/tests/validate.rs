@@ -1,0 +1,168 @@
+//! The programs `fit-cloth fit` and `validate` on fixtures with all eight tests, run as a user runs them.
+
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+const COARSE: [&str; 4] = ["--nodes", "13x13", "--points", "3"];
+
+fn fixture(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures").join(name).to_str().unwrap().into()
+}
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fit-cloth")).args(arguments).output().unwrap()
+}
+
+fn said(output: &Output) -> [String; 2] {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap())
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A folder with the fit of the denim in `fit`, made once.
+fn fitted() -> &'static Path {
+    static FOLDER: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
+    let (_, path) = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fit");
+        let output = run(&[&["fit", &fixture("cotton-denim"), "--out", text(&path)], &COARSE[..]].concat());
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", said(&output)[1]);
+        (folder, path)
+    });
+    path
+}
+
+fn validate(set: &str, out: &Path, more: &[&str]) -> Output {
+    let material = fitted().join("material.json");
+    run(&[&["validate", set, "--material", text(&material), "--out", text(out)], more].concat())
+}
+
+#[test]
+fn the_denim_ends_with_six_curves() {
+    let curves = fs::read_dir(fitted().join("curves")).unwrap();
+    assert_eq!(curves.count(), 6);
+    let residuals = fs::read_to_string(fitted().join("residuals.csv")).unwrap();
+    assert_eq!(residuals.lines().count(), 1 + 6, "{residuals}");
+    let plot = fs::read_to_string(fitted().join("plots/shear-force.svg")).unwrap();
+    // The bars turn, and all their frames are in the figure.
+    assert!(plot.matches("<circle").count() > 8, "{plot}");
+}
+
+#[test]
+fn motions_that_no_fit_saw_are_met_within_a_tenth() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let output = validate(&fixture("cotton-denim"), &out, &[]);
+    let [words, errors] = said(&output);
+    assert!(output.status.success(), "{errors}");
+    assert!(words.contains("aggregated torque") && words.contains("meet the aggregated torque"), "{words}");
+    // The second run replaces the first.
+    let output = validate(&fixture("cotton-denim"), &out, &["--json", "--threads", "1"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["schema"], "fit-cloth/validation/1");
+    for (sequence, measure) in
+        json["sequences"].as_array().unwrap().iter().zip(["aggregated-torque", "stretching-force-difference"])
+    {
+        assert_eq!(sequence["measure"]["name"], measure);
+        assert!(sequence["measure"]["share_of_range"].as_f64().unwrap() < 0.1, "{sequence}");
+        assert_eq!(sequence["measure"]["rows"].as_array().unwrap().len(), sequence["frames"]);
+    }
+    for name in ["validation.csv", "measures.csv", "forces.csv"] {
+        let table = fs::read_to_string(out.join(name)).unwrap();
+        let cells = |line: &str| line.split(',').count();
+        assert!(table.lines().count() > 2, "{name}");
+        assert!(table.lines().all(|line| cells(line) == cells(table.lines().next().unwrap())), "{table}");
+    }
+    assert!(
+        out.join("plots/corner-pull-measure.svg").exists()
+            && out.join("plots/complex-shear-force.svg").exists()
+    );
+}
+
+#[test]
+fn another_cloth_is_met_worse_in_all_its_tests() {
+    let folder = tempfile::tempdir().unwrap();
+    let shares = ["cotton-denim", "wool-cotton"].map(|name| {
+        let more = ["--kinds", "stretch-weft,shear,bend-warp", "--json"];
+        let output = validate(&fixture(name), &folder.path().join("out"), &more);
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let sequences = json["sequences"].as_array().unwrap();
+        assert_eq!(sequences.len(), 3, "{}", said(&output)[1]);
+        assert!(sequences.iter().any(|sequence| sequence["rms_position_m"].is_f64()), "{json}");
+        let shear = sequences.iter().find(|sequence| sequence["kind"] == "shear").unwrap();
+        shear["measure"]["share_of_range"].as_f64().unwrap()
+    });
+    assert!(shares[0] < 0.05 && shares[1] > 2.0 * shares[0], "{shares:?}");
+}
+
+#[test]
+fn what_cannot_be_validated_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (denim, out) = (fixture("cotton-denim"), folder.path().join("out"));
+    let refused = |output: Output, words: &str| {
+        let [_, errors] = said(&output);
+        assert_eq!(output.status.code(), Some(3), "{errors}");
+        assert!(errors.contains(words), "{errors}");
+    };
+    refused(validate(&denim, fitted(), &[]), "another --out");
+    refused(validate(&denim, &Path::new(&denim).join("result"), &[]), "outside the measurement set");
+    refused(validate(&denim, &out, &["--kinds", "stretch-bias"]), "kind");
+    refused(
+        run(&["validate", &denim, "--material", &format!("{denim}/fabric.toml"), "--out", text(&out)]),
+        "fabric.toml",
+    );
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    refused(validate(&denim, &out, &[]), "other things");
+    assert_eq!(validate(&denim, &out, &["--kinds", "silk"]).status.code(), Some(2));
+}
+
+#[test]
+fn without_its_test_the_diagonal_is_not_observed() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = folder.path().join("set");
+    for name in ["bend-weft", "bend-warp", "stretch-weft", "stretch-warp", "shear"] {
+        let from = Path::new(&fixture("cotton-denim")).join(name);
+        fs::create_dir_all(set.join(name)).unwrap();
+        for entry in fs::read_dir(from).unwrap() {
+            let path = entry.unwrap().path();
+            fs::copy(&path, set.join(name).join(path.file_name().unwrap())).unwrap();
+        }
+    }
+    fs::copy(Path::new(&fixture("cotton-denim")).join("fabric.toml"), set.join("fabric.toml")).unwrap();
+    let output =
+        run(&[&["bend", text(&set), "--out", text(&folder.path().join("out"))], &COARSE[..]].concat());
+    let [words, warnings] = said(&output);
+    assert!(output.status.success(), "{warnings}");
+    assert_eq!(warnings.lines().count(), 1, "{warnings}");
+    assert!(warnings.contains("bend-diagonal is not observed"), "{warnings}");
+    assert!(words.contains("known: stretch-weft, stretch-warp"), "{words}");
+    assert!(words.contains("assumed constant, since not known: bend-diagonal"), "{words}");
+}
+
+#[test]
+fn all_models_and_shared_curves() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let denim = fixture("cotton-denim");
+    let more = ["--model", "all", "--variant", "isotropic", "--nodes", "9x9", "--points", "2", "--json"];
+    let output = run(&[&["fit", &denim, "--out", text(&out)], &more[..]].concat());
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for model in ["stvk", "soft-constraint"] {
+        let curve = &json[model]["curves"]["stretch-warp"];
+        assert_eq!(curve["shared_by"], serde_json::json!(["stretch-weft", "stretch-warp"]), "{curve}");
+        assert_eq!(json[model]["curves"]["bend-diagonal"]["observed"], true);
+    }
+    assert_eq!(json["springs"]["curves"]["shear"]["observed"], true, "{}", said(&output)[1]);
+    let material = out.join("springs/material.json");
+    let valid =
+        run(&["validate", &denim, "--material", text(&material), "--out", text(&folder.path().join("v"))]);
+    assert!(valid.status.success(), "{}", said(&valid)[1]);
+}

@@ -1,0 +1,165 @@
+//! The folder of a validation: `validation.json`, `validation.csv`, `measures.csv`, `forces.csv`.
+
+use super::tables::{cell, force_table};
+use crate::error::Result;
+use crate::frame::MeasurementSet;
+use crate::material_file::{MaterialFile, ResidualEntry};
+use crate::stage::Variant;
+use crate::store::write_file;
+use crate::validation::{Measure, MeasureRow, Validated, Validation};
+use cloth_sim::material::Model;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The version of `validation.json`.
+const SCHEMA: &str = "fit-cloth/validation/1";
+
+/// `validation.json`.
+#[derive(Serialize)]
+struct File<'a> {
+    schema: &'static str,
+    program: &'static str,
+    model: Model,
+    variant: Variant,
+    /// Whose curves, and whose measurements.
+    curves_of: &'a str,
+    measured_on: &'a str,
+    sequences: Vec<Entry<'a>>,
+    without_equilibrium: Vec<Dropped<'a>>,
+    equilibria: usize,
+    factorisations: usize,
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    #[serde(flatten)]
+    residual: ResidualEntry,
+    frames_left_out: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    measure: Option<Whole<'a>>,
+}
+
+#[derive(Serialize)]
+struct Whole<'a> {
+    name: Measure,
+    unit: &'static str,
+    rms: Option<f64>,
+    share_of_range: Option<f64>,
+    rows: &'a [MeasureRow],
+}
+
+#[derive(Serialize)]
+struct Dropped<'a> {
+    sequence: &'a str,
+    frame: usize,
+    why: String,
+}
+
+/// Writes a validation into a folder that exists, and returns the text of `validation.json`.
+///
+/// # Errors
+/// What the operating system refuses.
+pub fn write_validation(
+    folder: &Path,
+    set: &MeasurementSet,
+    material: &MaterialFile,
+    validation: &Validation,
+) -> Result<String> {
+    let json = json(set, material, validation);
+    let forces = force_table(validation.sequences.iter().map(|sequence| &sequence.report));
+    let [sequences, measures] = [sequence_table(validation), measure_table(validation)];
+    write_file(&folder.join("validation.csv"), sequences.as_bytes())?;
+    write_file(&folder.join("measures.csv"), measures.as_bytes())?;
+    write_file(&folder.join("forces.csv"), forces.as_bytes())?;
+    write_file(&folder.join("validation.json"), json.as_bytes())?;
+    Ok(json)
+}
+
+fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) -> String {
+    let prediction = &validation.prediction;
+    let dropped = prediction.dropped.iter();
+    let file = File {
+        schema: SCHEMA,
+        program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")),
+        model: material.model,
+        variant: material.variant,
+        curves_of: &material.fabric.name,
+        measured_on: &set.fabric.name,
+        sequences: validation.sequences.iter().map(|sequence| entry(validation, sequence)).collect(),
+        without_equilibrium: dropped
+            .map(|d| Dropped { sequence: &d.sequence, frame: d.frame, why: d.status.to_string() })
+            .collect(),
+        equilibria: prediction.counters.equilibria,
+        factorisations: prediction.counters.factorisations,
+    };
+    // Strings and finite numbers: nothing here can fail to be JSON.
+    serde_json::to_string_pretty(&file).map(|text| text + "\n").unwrap_or_default()
+}
+
+fn entry<'a>(validation: &Validation, sequence: &'a Validated) -> Entry<'a> {
+    Entry {
+        residual: ResidualEntry::new(&sequence.report),
+        frames_left_out: validation.left_out(&sequence.report),
+        measure: sequence.measure.as_ref().map(|(measure, rows)| Whole {
+            name: *measure,
+            unit: measure.unit(),
+            rms: sequence.measure_rms(),
+            share_of_range: sequence.measure_share(),
+            rows,
+        }),
+    }
+}
+
+/// One row a sequence, those without an equilibrium last; what was not measured is empty.
+fn sequence_table(validation: &Validation) -> String {
+    let mut table = String::from(
+        "sequence,kind,frames,frames_left_out,frames_multi_stable,rms_force_n,largest_force_n,rms_position_m,\
+         measure,unit,rms_measure,share_of_range\n",
+    );
+    for sequence in &validation.sequences {
+        let report = &sequence.report;
+        let (name, unit) =
+            sequence.measure.as_ref().map_or_else(Default::default, |(m, _)| (key(*m), m.unit()));
+        let _ = writeln!(
+            table,
+            "{},{},{},{},{},{},{},{},{name},{unit},{},{}",
+            report.name,
+            report.kind,
+            report.frames,
+            validation.left_out(report),
+            report.multi_stable.len(),
+            cell(report.force_rms),
+            cell(report.force_rms.map(|_| report.force_largest)),
+            cell(report.position_rms),
+            cell(sequence.measure_rms()),
+            cell(sequence.measure_share()),
+        );
+    }
+    for (name, frames) in validation.lost() {
+        let _ = writeln!(table, "{name},,0,{frames},0,,,,,,,");
+    }
+    table
+}
+
+/// Every frame's measure, measured and simulated.
+fn measure_table(validation: &Validation) -> String {
+    let mut table = String::from("sequence,frame,extension,measure,unit,measured,simulated,multi_stable\n");
+    for sequence in &validation.sequences {
+        let Some((measure, rows)) = &sequence.measure else { continue };
+        let (name, unit) = (key(*measure), measure.unit());
+        for MeasureRow { frame, extension, measured, simulated, multi_stable } in rows {
+            let _ = writeln!(
+                table,
+                "{},{frame},{extension},{name},{unit},{measured},{simulated},{multi_stable}",
+                sequence.report.name
+            );
+        }
+    }
+    table
+}
+
+/// A measure's name as in JSON.
+fn key(measure: Measure) -> String {
+    measure.to_string().replace(' ', "-")
+}
