@@ -76,6 +76,15 @@ pub struct Failure {
     pub reason: String,
 }
 
+impl Failure {
+    /// As a sentence.
+    pub fn in_words(&self) -> String {
+        let names: Vec<String> = self.components.iter().map(|component| component.to_string()).collect();
+        let pass = if self.pass > 1 { ", second pass" } else { "" };
+        format!("{}{pass} failed: {}", names.join(" = "), self.reason)
+    }
+}
+
 impl FitReport {
     /// The last stage over a component; `None` if no sequence shows it.
     pub fn stage(&self, component: Component) -> Option<&StageReport> {

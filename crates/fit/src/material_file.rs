@@ -10,7 +10,7 @@ pub use entry::{Correlation, CurveEntry, ResidualEntry};
 
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
-use crate::incremental::FitReport;
+use crate::incremental::{Failure, FitReport};
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::Diagonals;
@@ -40,6 +40,9 @@ pub struct MaterialFile {
     pub curves: BTreeMap<Component, CurveEntry>,
     /// How each sequence was met.
     pub residuals: Vec<ResidualEntry>,
+    /// Stages that came to nothing, and why.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failures: Vec<String>,
     /// How the file came about.
     pub provenance: Provenance,
 }
@@ -88,7 +91,11 @@ impl MaterialFile {
             compression: settings.compression,
             fabric: set.fabric.clone(),
             curves: Component::ALL.into_iter().map(|component| (component, entry(component))).collect(),
-            residuals: sequences.iter().map(|(_, sequence)| ResidualEntry::new(sequence)).collect(),
+            residuals: sequences
+                .iter()
+                .map(|(stage, sequence)| ResidualEntry::new(sequence, &stage.dropped))
+                .collect(),
+            failures: report.failures.iter().map(Failure::in_words).collect(),
             provenance: Provenance {
                 program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")).into(),
                 constraints: settings.constraints,

@@ -54,6 +54,9 @@ pub fn run(
         warn(telling, &format!("{model} has no result: {}", failure.in_words()));
     }
     for Fitted { report, .. } in &results {
+        for failure in &report.failures {
+            warn(telling, &format!("{}: {}", report.model, failure.in_words()));
+        }
         for missing in goal.components().filter_map(|component| text::missing(report, component)) {
             warn(telling, &format!("{}: {missing}", report.model));
         }
@@ -80,6 +83,11 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     for settings in flags.model.models().into_iter().map(|model| flags.settings(model)) {
         if file.model != settings.model {
             return refuse("model", file.model.to_string(), format!("{}, as --model says", settings.model));
+        }
+        if settings.variant.is_isotropic() && !file.variant.is_isotropic() {
+            let expected =
+                format!("one that shares weft's and warp's curves, as --variant {}", settings.variant);
+            return refuse("variant", file.variant.to_string(), expected);
         }
         if file.compression != settings.compression {
             return refuse(
@@ -172,6 +180,9 @@ fn tell_model(
     }
     for missing in goal.components().filter_map(|component| text::missing(report, component)) {
         writeln!(output, "{missing}\n")?;
+    }
+    for failure in &report.failures {
+        writeln!(output, "{}\n", failure.in_words())?;
     }
     let used = report.sequences();
     for sequence in set.sequences.iter().filter(|s| !used.iter().any(|(_, used)| used.name == s.name)) {

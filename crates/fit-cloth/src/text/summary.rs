@@ -48,7 +48,9 @@ pub fn missing(report: &FitReport, component: Component) -> Option<String> {
     if report.knowledge.knows(component) {
         return None;
     }
+    let failed = report.failures.iter().any(|failure| failure.components.contains(&component));
     Some(match report.stage(component) {
+        None if failed => format!("{component} has no curve: its stage failed"),
         None => format!("{component} is not observed: no sequence shows it; it has no curve"),
         Some(stage) => {
             let names = list(stage.sequences.iter().map(|sequence| &sequence.name));

@@ -3,6 +3,7 @@
 use super::control_point::{ControlPoint, Unit};
 use crate::frame::Kind;
 use crate::report::{Basis, CurveReport, SequenceReport, StageReport};
+use crate::simulation::DroppedFrame;
 use crate::simulation::Objective;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Model};
@@ -168,10 +169,17 @@ pub struct ResidualEntry {
     /// Frames that left an unstable equilibrium: they may have several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub multi_stable_frames: Vec<usize>,
+    /// Frames whose residual stands out from its neighbours', the farthest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outlier_frames: Vec<usize>,
+    /// Frames whose equilibrium was not found; they take no part.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dropped_frames: Vec<usize>,
 }
 
 impl ResidualEntry {
-    pub(crate) fn new(sequence: &SequenceReport) -> Self {
+    pub(crate) fn new(sequence: &SequenceReport, dropped: &[DroppedFrame]) -> Self {
+        let lost = dropped.iter().filter(|dropped| dropped.sequence == sequence.name);
         Self {
             sequence: sequence.name.clone(),
             kind: sequence.kind,
@@ -182,6 +190,8 @@ impl ResidualEntry {
             loading_stiffness: sequence.hysteresis.map(|h| h.loading),
             unloading_stiffness: sequence.hysteresis.map(|h| h.unloading),
             multi_stable_frames: sequence.multi_stable.clone(),
+            outlier_frames: sequence.outliers.clone(),
+            dropped_frames: lost.map(|dropped| dropped.frame).collect(),
         }
     }
 }

@@ -99,7 +99,7 @@ fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) 
 
 fn entry<'a>(validation: &Validation, sequence: &'a Validated) -> Entry<'a> {
     Entry {
-        residual: ResidualEntry::new(&sequence.report),
+        residual: ResidualEntry::new(&sequence.report, &validation.prediction.dropped),
         frames_left_out: validation.left_out(&sequence.report),
         measure: sequence.measure.as_ref().map(|(measure, rows)| Whole {
             name: *measure,
