@@ -100,6 +100,9 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
                 sequence.report.multi_stable
             );
             assert!(share <= 0.1, "{} {}: {share}", source.0, sequence.report.name);
+            // Satin is thin enough to fold in more than one way.
+            let folds = source.0 == "cotton-satin" && sequence.report.kind == Kind::ComplexShear;
+            assert!(!folds || !sequence.report.multi_stable.is_empty());
         }
     }
 }

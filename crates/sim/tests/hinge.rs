@@ -6,12 +6,14 @@
 //!             passes  1e-14 rad; D/k = 3, 9, 3 on '/' grids, 3, 3.75, 4.5 on alternating ones, to 0.1 %
 //! ```
 
-use cloth_sim::bending::Hinge;
+use cloth_sim::bending::{Bending, Hinge};
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::element::{Element, Point, gather};
-use cloth_sim::material::Component;
+use cloth_sim::material::{Component, Model};
 use cloth_sim::membrane::{Spring, ring_two};
 use cloth_sim::mesh::{Diagonals, Mesh};
 use cloth_sim::samples::{self, SIDE, rolled};
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 
 #[test]
@@ -148,4 +150,52 @@ fn bending_springs_have_the_energy_of_the_chord() {
     let strain = chord * chord / (24.0 * radius * radius);
     assert!((energy(radius) / (0.5 * strain * strain * area) - 1.0).abs() < 1e-3);
     assert!((energy(radius) / energy(2.0 * radius) - 16.0).abs() < 0.02);
+}
+
+/// Segments that keep their length, each turned by κh against the one before: the moment per width is the derivative of
+/// the energy per area. So for hinges, of which a roll bends those along it, and for ring-2 springs.
+#[test]
+fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
+    let mesh = samples::square(9, Diagonals::Forward).unwrap();
+    let segment = SIDE / 8.0;
+    for model in [Model::Stvk, Model::Springs] {
+        let bending = Bending::new(model, &mesh, &[Component::BendWeft]).unwrap().unwrap();
+        let way = bending.rolled(Component::BendWeft).unwrap();
+        assert!(bending.rolled(Component::BendWarp).is_none());
+        let curve =
+            StiffnessCurve::new(vec![0.0, 1e-3, 2e-3], vec![3.0, 4.0, 6.0], NegativeStrain::Odd).unwrap();
+        // Energy per area that bends: a hinge stands for the cells beside it, a spring for its own cloth.
+        let energy = |curvature: f64| -> f64 {
+            let mut line = vec![Vector3::zeros()];
+            for i in 0..8 {
+                let angle = curvature * segment * f64::from(i);
+                line.push(line[line.len() - 1] + Vector3::new(angle.cos(), 0.0, angle.sin()) * segment);
+            }
+            let place = |node: usize| line[node % 9] + Vector3::new(0.0, mesh.positions[node].y, 0.0);
+            let x: Vec<f64> = (0..mesh.len()).flat_map(|node| <[f64; 3]>::from(place(node))).collect();
+            match &bending {
+                Bending::Springs(springs) => {
+                    let area: f64 = springs.iter().map(|spring| spring.area).sum();
+                    let strain =
+                        |spring: &Spring| Element::<2, 3, 1>::strains(spring, &gather(spring.nodes, &x))[0];
+                    springs.iter().map(|spring| curve.energy(strain(spring)) * spring.area).sum::<f64>()
+                        / area
+                }
+                Bending::DiscreteShells(hinges) => {
+                    let area = hinges.len() as f64 * segment * segment;
+                    let strain = |hinge: &Hinge| hinge.strains(&gather(hinge.nodes, &x))[0];
+                    hinges.iter().map(|hinge| curve.energy(strain(hinge)) * hinge.area()).sum::<f64>() / area
+                }
+            }
+        };
+        // Curvatures at which the strains are those of the curve.
+        for strain in [4e-4, 1.5e-3] {
+            let curvature = way.curvature(strain);
+            assert!((way.strain(curvature) / strain - 1.0).abs() < 1e-12);
+            let h = 1e-4 * curvature;
+            let slope = (energy(curvature + h) - energy(curvature - h)) / (2.0 * h);
+            let moment = way.lever(curvature) * curve.stress(strain);
+            assert!((moment / slope - 1.0).abs() < 1e-6, "{model} {strain}: {moment:e} {slope:e}");
+        }
+    }
 }
