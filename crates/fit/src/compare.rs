@@ -129,6 +129,14 @@ impl Row {
         }
     }
 
+    /// Frames without an equilibrium, which an overall figure does not see.
+    fn dropped(&self, criterion: Criterion) -> usize {
+        match criterion {
+            Criterion::Validation => self.validation.map_or(0, |distance| distance.dropped),
+            Criterion::LeaveOneOut | Criterion::Fit => self.fit.dropped,
+        }
+    }
+
     /// An overall figure; `None` if there is nothing to tell it by.
     pub fn figure(&self, criterion: Criterion) -> Option<f64> {
         match criterion {

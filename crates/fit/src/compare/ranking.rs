@@ -26,7 +26,8 @@ pub enum Criterion {
 }
 
 impl Comparison {
-    /// Ranks rows. Those without the figure that ranks come last.
+    /// Ranks rows. Those that lost frames which others kept come after these, since their figure is of an easier test;
+    /// those without the figure that ranks come last.
     pub fn new(mut rows: Vec<Row>) -> Self {
         let ranked_by = if rows.iter().any(|row| row.figure(Criterion::Validation).is_some()) {
             Criterion::Validation
@@ -36,7 +37,10 @@ impl Comparison {
             Criterion::Fit
         };
         let figure = |row: &Row| row.figure(ranked_by).unwrap_or(f64::INFINITY);
-        rows.sort_by(|a, b| figure(a).total_cmp(&figure(b)));
+        let ranked = rows.iter().filter(|row| row.figure(ranked_by).is_some());
+        let fewest = ranked.map(|row| row.dropped(ranked_by)).min().unwrap_or(0);
+        let easier = |row: &Row| row.figure(ranked_by).is_none() || row.dropped(ranked_by) > fewest;
+        rows.sort_by(|a, b| easier(a).cmp(&easier(b)).then(figure(a).total_cmp(&figure(b))));
         Self { ranked_by, rows }
     }
 
