@@ -209,8 +209,9 @@ fn judge(
     Judgement { scatter, covariance, gain, observed }
 }
 
-/// True if the measurements tell the curve's scale: its 95 % band (but for what earlier stages do not know) is less than
-/// the curve itself, or, where the curve is far below what is known of the other bending, less than that.
+/// True if the measurements tell the curve's scale: a curve twice as stiff would stand out from the noise, and from half of
+/// what the curve cannot meet anyway. A curve far below what is known of the other bending is taken to be as large as that:
+/// that it is so soft is knowledge too. What earlier stages do not know is not counted.
 fn is_observed(plan: &Plan, growth: &Growth, scatter: &Scatter, knowledge: &Knowledge) -> bool {
     let others = [Component::BendWeft, Component::BendWarp];
     let bends = plan.fitted[0].is_bending();
@@ -221,8 +222,8 @@ fn is_observed(plan: &Plan, growth: &Growth, scatter: &Scatter, knowledge: &Know
     let size =
         DVector::from_iterator(growth.curve.len(), growth.curve.stiffnesses().iter().map(|k| k.max(floor)));
     let signal = (&growth.outcome.jacobian * size).norm();
-    let variance = scatter.noise.powi(2) + scatter.misfit.powi(2) * scatter.measurements as f64;
-    signal > 2.0 * variance.sqrt()
+    let misfit = 0.5 * scatter.misfit * (scatter.measurements as f64).sqrt();
+    signal > (2.0 * scatter.noise).hypot(misfit)
 }
 
 pub(super) fn unfit(replicas: &[Replica], found: String, expected: &str) -> Error {
