@@ -275,7 +275,8 @@ fn glass_shears_as_its_yarns_let_it_and_predicts_another_strip() {
         }
     });
     println!("glass: up to 35° within {zone:.2}° along the axis, within {centre:.2}° at the centre");
-    let small = predict(&small_glass(), &[Kind::StretchBias], report.curves(), &settings).unwrap();
+    let small =
+        predict(&small_glass(), &[Kind::StretchBias], report.curves(), &settings, &Watch::default()).unwrap();
     let mut off = 0.0f64;
     for row in &small.sequences[0].forces {
         println!("    230 × 115 mm: {:.2} N measured, {:.2} N predicted", row.measured, row.simulated);

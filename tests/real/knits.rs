@@ -19,7 +19,7 @@
 use cloth_fit::frame::{MeasurementSet, Sequence};
 use cloth_fit::prediction::predict;
 use cloth_fit::report::{ForceRow, SequenceReport};
-use cloth_fit::stage::{Settings, Watch, stretch};
+use cloth_fit::stage::{Settings, Watch, kinds_of, stretch};
 use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::{data, weightless};
@@ -158,7 +158,8 @@ fn predicted(model: Model) -> usize {
         let report = stretch::fit(&known, component, &settings, &mut Watch::default()).unwrap().unwrap();
         assert!(report.converged && report.dropped.is_empty());
         let curves = Curves::from_iter([(component, report.curve.curve.clone())]);
-        let prediction = predict(&unknown, &[stretch::kind_of(component)], &curves, &settings).unwrap();
+        let prediction =
+            predict(&unknown, kinds_of(component), &curves, &settings, &Watch::default()).unwrap();
         assert!(prediction.dropped.is_empty() && report.dropped.is_empty());
         let predictions = prediction.sequences;
 

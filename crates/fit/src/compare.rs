@@ -99,7 +99,7 @@ pub fn run(
         parameters: observed(&report).map(|stage| stage.curve.curve.len()).sum(),
         missing: missing(&report),
         fit: Distance::of_fit(set, &report),
-        validation: validation(set, report.curves(), settings)?,
+        validation: validation(set, report.curves(), settings, watch)?,
         leave_one_out: distance::root_mean_square(left_out.iter().filter_map(LeftOut::relative)),
         left_out,
         equilibria: sum(|stage| stage.counters.equilibria),
@@ -148,12 +148,17 @@ impl Row {
 }
 
 /// Without a stretch curve a sheet has no shape to predict.
-fn validation(set: &MeasurementSet, curves: &Curves, settings: &Settings) -> Result<Option<Distance>> {
+fn validation(
+    set: &MeasurementSet,
+    curves: &Curves,
+    settings: &Settings,
+    watch: &Watch<'_>,
+) -> Result<Option<Distance>> {
     let any = set.sequences.iter().any(|sequence| VALIDATION.contains(&sequence.kind));
     if !any || !curves.components().any(Component::is_stretch) {
         return Ok(None);
     }
-    Ok(Some(Distance::of_prediction(set, &predict(set, &VALIDATION, curves, settings)?)))
+    Ok(Some(Distance::of_prediction(set, &predict(set, &VALIDATION, curves, settings, watch)?)))
 }
 
 fn observed(report: &FitReport) -> impl Iterator<Item = &StageReport> {

@@ -40,12 +40,8 @@ impl Stage {
     }
 
     /// The tests that show it.
-    pub fn kinds(self) -> &'static [Kind] {
-        match self {
-            Self::Stretch => &[Kind::StretchWeft, Kind::StretchWarp],
-            Self::Shear => &[Kind::Shear, Kind::StretchBias],
-            Self::Bend => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
-        }
+    pub fn kinds(self) -> Vec<Kind> {
+        stage::kinds_of_all(self.components())
     }
 }
 

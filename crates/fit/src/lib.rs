@@ -79,6 +79,7 @@ pub mod incremental;
 pub mod io;
 pub mod knowledge;
 pub mod least_squares;
+mod locator;
 pub mod material_file;
 pub mod measure;
 pub mod prediction;

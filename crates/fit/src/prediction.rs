@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
 use crate::replica::{Parts, Replica};
 use crate::report::SequenceReport;
-use crate::simulation::{Counters, DroppedFrame, Meter, Objective, Simulation, Task};
-use crate::stage::{Settings, softest_bending};
+use crate::simulation::{Counters, DroppedFrame, Objective, Simulation, Task};
+use crate::stage::{Settings, Watch, softest_bending};
 use crate::summary::sequence_reports;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
@@ -34,8 +34,10 @@ pub fn predict(
     kinds: &[Kind],
     curves: &Curves,
     settings: &Settings,
+    watch: &Watch<'_>,
 ) -> Result<Prediction> {
     settings.validate()?;
+    let spent_before = watch.meter.read();
     let curves = &completed(curves, settings)?;
     let replicas: Vec<Replica> = set
         .sequences
@@ -51,14 +53,13 @@ pub fn predict(
         robust: None,
     };
     let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
-    let meter = Arc::<Meter>::default();
-    let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(&meter));
+    let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(&watch.meter));
     simulation.follow();
     let forces = simulation.settle();
     Ok(Prediction {
         sequences: sequence_reports(&simulation, &forces),
         dropped: simulation.dropped().to_vec(),
-        counters: meter.read(),
+        counters: watch.meter.read().since(&spent_before),
     })
 }
 
@@ -87,13 +88,13 @@ fn mechanics(source: cloth_sim::error::Error) -> Error {
 
 /// What a test's replica consists of: in strips pulled along their yarns shear and bending play no part. Without any
 /// bending curve a sheet between clips stays in its plane: in space it would crumple.
-pub(crate) fn parts(kind: Kind, set: &MeasurementSet, curves: &Curves, settings: &Settings) -> Parts {
+fn parts(kind: Kind, set: &MeasurementSet, curves: &Curves, settings: &Settings) -> Parts {
     let stretches = matches!(kind, Kind::StretchWeft | Kind::StretchWarp);
     let components: Vec<Component> =
         curves.components().filter(|component| !stretches || component.is_stretch()).collect();
     Parts {
         model: settings.model,
-        flat: kind == Kind::StretchBias || !components.iter().any(|component| component.is_bending()),
+        flat: kind == Kind::StretchBias || !stretches && !curves.components().any(Component::is_bending),
         components,
         areal_density: set.fabric.areal_density_kg_m2,
         nodes: settings.nodes,

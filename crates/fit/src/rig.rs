@@ -35,8 +35,9 @@ pub use fabric::{BendingPoints, KnownCurves, KnownFabric, LargestExtension, Memb
 
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Sequence};
+use crate::locator::Locator;
 use cloth_sim::material::Curves;
-use cloth_sim::mesh::Diagonals;
+use cloth_sim::mesh::{Diagonals, Mesh};
 use nalgebra::Vector3;
 use noise::Instruments;
 use rayon::prelude::*;
@@ -211,7 +212,10 @@ impl Rig {
         let mesh = test.sheet.mesh(grid)?;
         let seen = test.sheet.mesh(test.sheet.grid(self.measured, Diagonals::Alternating))?;
         let states = Truth::new(&test, &mesh, &grid, fabric, curves).frames()?;
-        let samples: Vec<_> = seen.material.iter().map(|m| test.sheet.locate(&grid, m)).collect();
+        let own = |mesh: &Mesh| -> Vec<_> { mesh.material.iter().map(|m| test.sheet.own(m)).collect() };
+        let flat = own(&mesh);
+        let locator = Locator::new(&mesh, &flat, test.sheet.size);
+        let samples: Vec<_> = own(&seen).into_iter().map(|point| locator.find(point)).collect();
         let shape = |state: &State| -> Vec<Vector3<f64>> {
             samples.iter().map(|sample| sample.interpolate(&mesh, &state.positions)).collect()
         };

@@ -10,6 +10,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::{MeshPoint, Sequence};
+use crate::locator::Locator;
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -48,7 +49,7 @@ impl Specimen {
         let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height, diagonals));
         let grid = Grid { columns, rows, width, height, diagonals };
         let mut mesh = grid.mesh().map_err(mechanics)?;
-        let locator = Locator::new(&sequence.mesh, &rectangle);
+        let locator = Locator::new(&sequence.mesh, &rectangle.flat, rectangle.size);
         let samples: Vec<MeshPoint> = mesh.positions.iter().map(|p| locator.find(p.xy() + corner)).collect();
         for (material, sample) in mesh.material.iter_mut().zip(&samples) {
             *material = sample.interpolate(&sequence.mesh, &sequence.mesh.material);
@@ -135,14 +136,10 @@ impl Rectangle {
             found,
             expected: expected.into(),
         };
-        // Summed over triangles the normal does not care how fine the mesh is; it points to where weft × warp does.
-        let corner = |triangle: &[usize; 3]| triangle.map(|vertex| mesh.positions[vertex]);
-        let normals = mesh.triangles.iter().map(corner).map(|[a, b, c]| (b - a).cross(&(c - a)));
-        let double_area: Vector3<f64> = normals.clone().sum();
-        let normal = double_area.normalize();
+        let normal = rest_normal(mesh);
         let centre = mesh.positions.iter().sum::<Vector3<f64>>() / mesh.len() as f64;
         let off_plane = mesh.positions.iter().fold(0.0f64, |m, p| m.max((p - centre).dot(&normal).abs()));
-        let area: f64 = normals.map(|n| n.norm()).sum::<f64>() / 2.0;
+        let area: f64 = normals(mesh).map(|n| n.norm()).sum::<f64>() / 2.0;
         if off_plane > 0.01 * area.sqrt() {
             return Err(bad(format!("a vertex {off_plane:.2e} m off the plane"), "a flat rest mesh"));
         }
@@ -186,6 +183,17 @@ impl Rectangle {
     }
 }
 
+/// Twice the area of every triangle at rest, along its normal, m².
+fn normals(mesh: &Mesh) -> impl Iterator<Item = Vector3<f64>> + '_ {
+    let corners = mesh.triangles.iter().map(|triangle| triangle.map(|vertex| mesh.positions[vertex]));
+    corners.map(|[a, b, c]| (b - a).cross(&(c - a)))
+}
+
+/// Unit normal of a flat mesh at rest, weft × warp. Summed over triangles it does not care how fine the mesh is.
+pub(crate) fn rest_normal(mesh: &Mesh) -> Vector3<f64> {
+    normals(mesh).sum::<Vector3<f64>>().normalize()
+}
+
 /// The weft direction in space at rest: area-weighted mean of ∂position/∂u.
 fn weft_direction(mesh: &Mesh, normal: &Vector3<f64>) -> Vector3<f64> {
     let mut sum = Vector3::zeros();
@@ -207,7 +215,8 @@ fn quarter_turn(side: Vector2<f64>) -> Vector2<f64> {
     turns.into_iter().max_by(better).unwrap_or(side)
 }
 
-fn bounds(points: impl Iterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
+/// The lowest and the highest corner of the box around points.
+pub(crate) fn bounds(points: impl Iterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
     points.fold([Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)], |[low, high], p| {
         [low.inf(&p), high.sup(&p)]
     })
@@ -235,59 +244,6 @@ fn convex_hull(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
     let mut hull = chain(&mut points.iter());
     hull.extend(chain(&mut points.iter().rev()));
     hull
-}
-
-/// Finds the triangle of a flat mesh that a point lies in, through buckets.
-struct Locator<'a> {
-    mesh: &'a Mesh,
-    rectangle: &'a Rectangle,
-    buckets: Vec<Vec<usize>>,
-    side: usize,
-}
-
-impl<'a> Locator<'a> {
-    fn new(mesh: &'a Mesh, rectangle: &'a Rectangle) -> Self {
-        let side = ((mesh.triangles.len() as f64).sqrt() as usize / 2).max(1);
-        let mut locator = Self { mesh, rectangle, buckets: vec![Vec::new(); side * side], side };
-        for (index, triangle) in mesh.triangles.iter().enumerate() {
-            let [low, high] = bounds(triangle.iter().map(|&vertex| rectangle.flat[vertex]));
-            let ([i0, j0], [i1, j1]) = (locator.bucket(low), locator.bucket(high));
-            for j in j0..=j1 {
-                (i0..=i1).for_each(|i| locator.buckets[j * side + i].push(index));
-            }
-        }
-        locator
-    }
-
-    fn bucket(&self, p: Vector2<f64>) -> [usize; 2] {
-        let place = |p: f64, size: f64| ((p / size * self.side as f64).max(0.0) as usize).min(self.side - 1);
-        [place(p.x, self.rectangle.size[0]), place(p.y, self.rectangle.size[1])]
-    }
-
-    /// The triangle that a point lies in, or lies outside of the least (rounding at the border).
-    fn find(&self, p: Vector2<f64>) -> MeshPoint {
-        let [i, j] = self.bucket(p);
-        let here = &self.buckets[j * self.side + i];
-        let depth = |point: &MeshPoint| point.weights.into_iter().fold(f64::MAX, f64::min);
-        let best = |triangles: &mut dyn Iterator<Item = usize>| {
-            triangles
-                .map(|triangle| self.barycentric(triangle, p))
-                .max_by(|a, b| depth(a).total_cmp(&depth(b)))
-        };
-        match best(&mut here.iter().copied()) {
-            Some(point) if depth(&point) > -1e-9 => point,
-            // A coarse mesh may leave a bucket's border to a neighbour.
-            _ => best(&mut (0..self.mesh.triangles.len()))
-                .unwrap_or(MeshPoint { triangle: 0, weights: [1.0, 0.0, 0.0] }),
-        }
-    }
-
-    fn barycentric(&self, triangle: usize, p: Vector2<f64>) -> MeshPoint {
-        let [a, b, c] = self.mesh.triangles[triangle].map(|vertex| self.rectangle.flat[vertex]);
-        let area = (b - a).perp(&(c - a));
-        let [u, v] = [(p - a).perp(&(c - a)) / area, (b - a).perp(&(p - a)) / area];
-        MeshPoint { triangle, weights: [1.0 - u - v, u, v] }
-    }
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ pub use course::{Plan, fit};
 pub(crate) use start::softest_bending;
 
 use crate::error::{Error, Result};
+use crate::frame::Kind;
 use crate::gauss_newton::{Iteration, Options};
 use crate::simulation::Meter;
 use cloth_sim::equilibrium;
@@ -25,6 +26,27 @@ use cloth_sim::material::{Component, Compression, Model};
 use cloth_sim::mesh::Diagonals;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+/// The tests that show a component.
+pub fn kinds_of(component: Component) -> &'static [Kind] {
+    match component {
+        Component::StretchWeft => &[Kind::StretchWeft],
+        Component::StretchWarp => &[Kind::StretchWarp],
+        Component::Shear => &[Kind::Shear, Kind::StretchBias],
+        Component::BendWeft => &[Kind::BendWeft],
+        Component::BendWarp => &[Kind::BendWarp],
+        Component::BendDiagonal => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
+    }
+}
+
+/// The tests that show any of some components, each once.
+pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
+    let mut kinds: Vec<Kind> =
+        components.iter().flat_map(|&component| kinds_of(component)).copied().collect();
+    kinds.sort();
+    kinds.dedup();
+    kinds
+}
 
 /// What keeps a curve physical.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -8,7 +8,8 @@ use crate::frame::{Kind, MeasurementSet, Sequence};
 use crate::measure::{Pull, aggregated_torque, clip_centres, pulls, stretching_force_difference};
 use crate::prediction::{Prediction, predict};
 use crate::report::{ForceRow, SequenceReport};
-use crate::stage::Settings;
+use crate::specimen::rest_normal;
+use crate::stage::{Settings, Watch};
 use cloth_sim::material::Curves;
 use nalgebra::Vector3;
 
@@ -132,8 +133,9 @@ pub fn validate(
     kinds: &[Kind],
     curves: &Curves,
     settings: &Settings,
+    watch: &Watch<'_>,
 ) -> Result<Validation> {
-    let prediction = predict(set, kinds, curves, settings)?;
+    let prediction = predict(set, kinds, curves, settings, watch)?;
     let validated = |report: &SequenceReport| {
         let sequence = set.sequences.iter().find(|sequence| sequence.name == report.name);
         let measure = Measure::of(report.kind).zip(sequence);
@@ -189,18 +191,8 @@ fn measured_whole(
     let centre = centres.iter().sum::<Vector3<f64>>() / centres.len() as f64;
     match measure {
         Measure::AggregatedTorque => {
-            Some(aggregated_torque(&forces, &centres, &centre, &rest_normal(sequence)))
+            Some(aggregated_torque(&forces, &centres, &centre, &rest_normal(&sequence.mesh)))
         }
         Measure::StretchingForceDifference => stretching_force_difference(&forces, &centres),
     }
-}
-
-/// Unit normal of the sheet at rest, weft × warp.
-fn rest_normal(sequence: &Sequence) -> Vector3<f64> {
-    let mesh = &sequence.mesh;
-    let area = |[a, b, c]: &[usize; 3]| {
-        let [a, b, c] = [a, b, c].map(|&vertex| mesh.positions[vertex]);
-        (b - a).cross(&(c - a))
-    };
-    mesh.triangles.iter().map(area).sum::<Vector3<f64>>().normalize()
 }

@@ -52,7 +52,7 @@ impl Grid {
     }
 
     /// True if a cell is split by '/'; false by '\', or by both.
-    pub fn is_forward(&self, column: usize, row: usize) -> bool {
+    fn is_forward(&self, column: usize, row: usize) -> bool {
         match self.diagonals {
             Diagonals::Forward => true,
             Diagonals::Backward | Diagonals::Crossed => false,

@@ -42,7 +42,7 @@ pub struct CompareOptions {
 /// refuses.
 pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (set, folder) = options.on.open("-compare")?;
-    let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).copied().collect();
+    let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).collect();
     if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
         return Err(fit::nothing(&options.on.set, &set, &kinds));
     }

@@ -79,6 +79,6 @@ impl Goal {
     /// The tests that show what is not known.
     pub fn kinds(self, known: &Knowledge) -> Vec<Kind> {
         let fits = |stage: &&Stage| !stage.components().iter().all(|&component| known.knows(component));
-        self.stages().iter().filter(fits).flat_map(|stage| stage.kinds()).copied().collect()
+        self.stages().iter().filter(fits).flat_map(|stage| stage.kinds()).collect()
     }
 }

@@ -64,7 +64,7 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
         return Err(fit::nothing(&options.on.set, &set, &kinds));
     }
     let progress = Progress::new("validating", !telling.quiet);
-    let validation = validate(&set, &kinds, &curves, &options.settings(&material));
+    let validation = validate(&set, &kinds, &curves, &options.settings(&material), &progress.watch());
     progress.finish();
     let validation = validation?;
     let mut json = String::new();

@@ -6,7 +6,7 @@ use crate::frame::{Kind, MeasurementSet, Sequence};
 use crate::incremental::{self, FitReport, Stage};
 use crate::knowledge::Knowledge;
 use crate::prediction::predict;
-use crate::stage::{Settings, Watch, bend, stretch};
+use crate::stage::{Settings, Watch, kinds_of};
 use cloth_sim::material::Component;
 use serde::Serialize;
 
@@ -78,7 +78,7 @@ fn predicted(
 ) -> Result<(Distance, Vec<Component>)> {
     let report = incremental::fit(rest, &Stage::ALL, &Knowledge::default(), settings, watch)?;
     let kinds: Vec<Kind> = alone.sequences.iter().map(|sequence| sequence.kind).collect();
-    let prediction = predict(alone, &kinds, report.curves(), settings)?;
+    let prediction = predict(alone, &kinds, report.curves(), settings, watch)?;
     Ok((Distance::of_prediction(alone, &prediction), missing(&report)))
 }
 
@@ -96,14 +96,6 @@ fn is_shown(set: &MeasurementSet, component: Component, settings: &Settings) -> 
         [[Component::StretchWeft, Component::StretchWarp], [Component::BendWeft, Component::BendWarp]];
     let pair = pairs.iter().find(|pair| settings.variant.is_isotropic() && pair.contains(&component));
     let sharing = pair.map_or(vec![component], |pair| pair.to_vec());
-    let shows = |kind: Kind| sharing.iter().any(|&component| kinds(component).contains(&kind));
+    let shows = |kind: Kind| sharing.iter().any(|&component| kinds_of(component).contains(&kind));
     set.sequences.iter().any(|sequence| shows(sequence.kind))
-}
-
-fn kinds(component: Component) -> Vec<Kind> {
-    match component {
-        Component::StretchWeft | Component::StretchWarp => vec![stretch::kind_of(component)],
-        Component::Shear => Stage::Shear.kinds().to_vec(),
-        _ => bend::kinds_of(component).to_vec(),
-    }
 }

@@ -10,6 +10,7 @@ use cloth_sim::equilibrium::{Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DVector, Vector3};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Two equilibria of a frame are one if no node is farther apart than this share of a cell.
 const SAME_SHAPE: f64 = 0.01;
@@ -24,7 +25,7 @@ pub(super) struct State {
     pub(super) escaped: bool,
     /// How errors of what is held enter; taken anew by [`Simulation::set_curve`] and else kept, so that what is minimised
     /// is one function.
-    pub(super) whitening: Option<Whitening>,
+    pub(super) whitening: Option<Arc<Whitening>>,
 }
 
 /// A frame's share of an evaluation.
@@ -147,7 +148,7 @@ impl<'a> Simulation<'a> {
                 let row = |unknown| (0..columns.len()).map(move |k| k * unknowns + unknown);
                 result.derivatives = seen.flat_map(row).map(|place| sensitivity[place]).collect();
                 if result.state.whitening.is_none() && replica.held_spread > 0.0 {
-                    result.state.whitening = Some(whitening(solver, replica, frame));
+                    result.state.whitening = Some(Arc::new(whitening(solver, replica, frame)));
                 }
             }
         }

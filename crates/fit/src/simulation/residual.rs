@@ -108,8 +108,8 @@ impl Simulation<'_> {
         let scales: Vec<f64> = self.scales(replica, frame).collect();
         let mut rows = DMatrix::zeros(scales.len(), points + 1);
         let measured = measured(replica, frame, self.task.objective);
-        for (i, ((measured, simulated), scale)) in measured.zip(&result.simulated).zip(&scales).enumerate() {
-            rows[(i, 0)] = (measured - simulated) / scale;
+        for (i, scale) in scales.iter().enumerate() {
+            rows[(i, 0)] = (measured[i] - result.simulated[i]) / scale;
             (0..points).for_each(|k| rows[(i, k + 1)] = result.derivatives[i * points + k] / scale);
         }
         if let Some(whitening) = &result.state.whitening {
@@ -192,16 +192,12 @@ pub(super) fn seen_unknowns<'r>(
 }
 
 /// What was measured of what is compared.
-fn measured<'r>(
-    replica: &'r Replica,
-    frame: &'r ReplicaFrame,
-    objective: Objective,
-) -> Box<dyn Iterator<Item = f64> + 'r> {
-    match objective {
-        Objective::Forces => Box::new(frame.forces.iter().map(|component| component.force)),
-        Objective::Positions => Box::new(
-            seen_unknowns(replica, frame)
-                .filter_map(|(_, coordinate)| frame.observed.as_ref().map(|observed| observed[coordinate])),
-        ),
+fn measured(replica: &Replica, frame: &ReplicaFrame, objective: Objective) -> Vec<f64> {
+    match (objective, &frame.observed) {
+        (Objective::Forces, _) => frame.forces.iter().map(|component| component.force).collect(),
+        (Objective::Positions, Some(observed)) => {
+            seen_unknowns(replica, frame).map(|(_, coordinate)| observed[coordinate]).collect()
+        }
+        (Objective::Positions, None) => Vec::new(),
     }
 }

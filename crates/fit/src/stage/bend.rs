@@ -2,19 +2,9 @@
 //!
 //! Source: Miguel et al. 2012, §5.2. What is held at the edge is ours: docs/model.md.
 
-use super::Plan;
-use crate::frame::Kind;
+use super::{Plan, kinds_of_all};
 use crate::simulation::Objective;
 use cloth_sim::material::Component;
-
-/// The tests that show a component.
-pub fn kinds_of(component: Component) -> &'static [Kind] {
-    match component {
-        Component::BendWeft => &[Kind::BendWeft],
-        Component::BendWarp => &[Kind::BendWarp],
-        _ => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
-    }
-}
 
 /// What the stage fits, and on what.
 ///
@@ -24,7 +14,7 @@ pub fn plan(components: &[Component], pass: usize) -> Plan {
         fitted: components.to_vec(),
         components: Component::ALL.to_vec(),
         objective: Objective::Positions,
-        kinds: components.iter().flat_map(|&component| kinds_of(component)).copied().collect(),
+        kinds: kinds_of_all(components),
         flat: false,
         pass,
     }

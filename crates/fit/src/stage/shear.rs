@@ -5,8 +5,7 @@
 //!
 //! Source: Miguel et al. 2012, §5.2; the strip cut on the bias is ours, for those without a picture frame.
 
-use super::Plan;
-use crate::frame::Kind;
+use super::{Plan, kinds_of_all};
 use crate::simulation::Objective;
 use cloth_sim::material::Component;
 
@@ -19,7 +18,7 @@ pub fn plan(pass: usize) -> Plan {
         fitted: vec![Component::Shear],
         components: components.collect(),
         objective: Objective::Forces,
-        kinds: vec![Kind::Shear, Kind::StretchBias],
+        kinds: kinds_of_all(&[Component::Shear]),
         flat: pass == 1,
         pass,
     }

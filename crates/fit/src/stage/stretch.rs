@@ -5,18 +5,13 @@
 //!
 //! Source: Miguel et al. 2012, §5.2.
 
-use super::{Plan, Settings, Watch, course};
+use super::{Plan, Settings, Watch, course, kinds_of_all};
 use crate::error::Result;
-use crate::frame::{Kind, MeasurementSet};
+use crate::frame::MeasurementSet;
 use crate::knowledge::Knowledge;
 use crate::report::StageReport;
 use crate::simulation::Objective;
 use cloth_sim::material::Component;
-
-/// The test that stretches along a component.
-pub fn kind_of(component: Component) -> Kind {
-    if component == Component::StretchWarp { Kind::StretchWarp } else { Kind::StretchWeft }
-}
 
 /// What the stage fits, and on what.
 ///
@@ -26,7 +21,7 @@ pub fn plan(components: &[Component]) -> Plan {
         fitted: components.to_vec(),
         components: vec![Component::StretchWeft, Component::StretchWarp],
         objective: Objective::Forces,
-        kinds: components.iter().map(|&component| kind_of(component)).collect(),
+        kinds: kinds_of_all(components),
         flat: false,
         pass: 1,
     }
