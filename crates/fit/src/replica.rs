@@ -320,7 +320,7 @@ impl Replica {
                 Some(&known) => known,
                 None => {
                     let nodes: Vec<Held> = lines.held(held).collect();
-                    let tied = lines.beyond(held);
+                    let tied = lines.all();
                     self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, tied, false)?);
                     cloth_of.insert(held, self.cloths.len() - 1);
                     self.cloths.len() - 1

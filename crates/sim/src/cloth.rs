@@ -3,6 +3,7 @@
 //! A problem lists the parts that it has. What is absent costs nothing: no hinge in a stretch problem's matrix, two
 //! unknowns a node where the motion is planar, no unknown for a node that is held.
 
+mod alike;
 mod numbering;
 
 use crate::bending::Bending;
@@ -16,9 +17,10 @@ use crate::load::{Held, lumped_masses};
 use crate::material::{Component, Curves, Model};
 use crate::membrane::Membrane;
 use crate::mesh::{Edge, Mesh};
+use alike::{Alike, are_alike};
 use nalgebra::Vector3;
 use numbering::{GraphPass, ScatterPass, columns, leaders, number};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What a cloth problem consists of.
 #[derive(Debug, Clone)]
@@ -35,7 +37,9 @@ pub struct Problem<'a> {
     pub gravity: Vector3<f64>,
     /// Nodes at prescribed places.
     pub held: &'a [Held],
-    /// Groups of free nodes that move alike, all by the same displacement: the lines of a sheet that bends as a cylinder.
+    /// Groups of nodes that move alike, all by the same displacement: the lines of a sheet that bends as a cylinder. The
+    /// groups are parallel in every state, as they are at rest, so that of elements between the same groups one stands for
+    /// all. A group is free, or held by one clip, as a whole.
     pub tied: &'a [Vec<usize>],
     /// All motion is in planes z = const: two unknowns a node.
     pub planar: bool,
@@ -57,6 +61,8 @@ pub struct Cloth {
     triangles: Vec<[usize; 3]>,
     /// Mean length of the rest mesh's edges, m.
     mean_edge: f64,
+    /// Elements that were left out, and those that stand for them: their nodes.
+    twins: Vec<[Vec<usize>; 2]>,
     /// Index into stacked coordinates of every unknown; of a group that moves alike, its first node's.
     unknowns: Vec<usize>,
     /// Every coordinate that is not held, and its unknown.
@@ -80,8 +86,11 @@ impl Cloth {
     pub fn new(problem: &Problem<'_>) -> Result<Self> {
         let Problem { mesh, model, components, planar, .. } = *problem;
         check(problem)?;
-        let membrane = Membrane::new(model, mesh, components)?;
-        let bending = Bending::new(model, mesh, components)?;
+        let mut membrane = Membrane::new(model, mesh, components)?;
+        let mut bending = Bending::new(model, mesh, components)?;
+        let mean_edge = mean_edge(mesh)?;
+        let leader = leaders(mesh.len(), problem.tied);
+        let twins = Alike::new(mesh, &leader, mean_edge).merge(&mut membrane, &mut bending);
         let weights = if problem.gravity == Vector3::zeros() {
             Vec::new()
         } else {
@@ -98,7 +107,6 @@ impl Cloth {
         }
         let mut graph = GraphPass { neighbours: vec![BTreeSet::new(); mesh.len()] };
         visit(&membrane, bending.as_ref(), planar, &mut graph);
-        let leader = leaders(mesh.len(), problem.tied);
         let neighbours = graph.led(&leader);
         let moves: Vec<bool> = (0..mesh.len()).map(|node| !held[node] && leader[node] == node).collect();
         let dimensions = if planar { 2 } else { 3 };
@@ -137,7 +145,8 @@ impl Cloth {
             clip_of,
             planar,
             triangles: mesh.triangles.clone(),
-            mean_edge: mean_edge(mesh)?,
+            mean_edge,
+            twins,
             unknowns,
             free,
             pattern,
@@ -326,6 +335,11 @@ impl Cloth {
         self.clip_of[node]
     }
 
+    /// True if tied groups are parallel in a state.
+    pub(crate) fn is_parallel(&self, x: &[f64]) -> bool {
+        are_alike(&self.twins, x, self.mean_edge)
+    }
+
     pub(crate) fn mean_edge(&self) -> f64 {
         self.mean_edge
     }
@@ -424,15 +438,17 @@ fn check(problem: &Problem<'_>) -> Result<()> {
     if let Some(held) = problem.held.iter().find(|held| held.node >= mesh.len()) {
         return Err(Error::ShapeMismatch { what: "held node", expected: mesh.len(), found: held.node });
     }
+    let held: BTreeMap<usize, Option<usize>> = problem.held.iter().map(|held| (held.node, held.clip)).collect();
     let mut seen = BTreeSet::new();
-    let mut unfit = |node: usize| {
-        node >= mesh.len() || problem.held.iter().any(|held| held.node == node) || !seen.insert(node)
+    let mut unfit = |group: &[usize], node: usize| {
+        node >= mesh.len() || held.get(&node) != held.get(&group[0]) || !seen.insert(node)
     };
-    if let Some(&node) = problem.tied.iter().flatten().find(|node| unfit(**node)) {
+    let nodes = problem.tied.iter().flat_map(|group| group.iter().map(move |&node| (group, node)));
+    if let Some((_, node)) = nodes.into_iter().find(|&(group, node)| unfit(group, node)) {
         return Err(Error::InvalidValue {
             field: "tied",
             value: node as f64,
-            expected: "free nodes of the mesh, each in one group",
+            expected: "nodes of the mesh, each in one group, which is free or held by one clip",
         });
     }
     let parts = mesh.parts();

@@ -142,6 +142,15 @@ const ESCAPES: usize = 6;
 /// factorisations with 0.5, 3.7 with 0.25; picture frames 5.0 and 6.0.
 const CHORD_CONTRACTION: f64 = 0.5;
 
+/// So many matrices that are not positive definite are clamped, element by element, which takes out the spurious stress of
+/// a poor start.
+const CLAMPED_STEPS: usize = 2;
+
+/// μ, as a share of the mean of the diagonal, for further ones, as where a sheet is about to buckle: clamping would stiffen
+/// the way into the buckle a hundredfold. It falls to a tenth from step to step, and below the least to nothing.
+const DAMPING: f64 = 1e-3;
+const LEAST_DAMPING: f64 = 2e-6;
+
 /// The memory that finding equilibria of one cloth needs. One a thread.
 pub struct Solver<'a> {
     cloth: &'a Cloth,
@@ -161,6 +170,10 @@ pub struct Solver<'a> {
     contraction: f64,
     /// μ of the factor, N/m: it is that of the matrix + μI.
     shift: f64,
+    /// μ of the next Newton matrix, as a share of the mean of its diagonal.
+    damping: f64,
+    /// Newton matrices that were not positive definite, in this minimisation.
+    clamped: usize,
 }
 
 impl<'a> Solver<'a> {
@@ -182,6 +195,8 @@ impl<'a> Solver<'a> {
             mixed: Vec::new(),
             contraction: 1.0,
             shift: 0.0,
+            damping: 0.0,
+            clamped: 0,
         }
     }
 
@@ -193,9 +208,10 @@ impl<'a> Solver<'a> {
     /// definite: shifted until it is).
     ///
     /// # Panics
-    /// If `x` has another length than the cloth has coordinates.
+    /// If `x` has another length than the cloth has coordinates, or tied groups that are not parallel.
     pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
+        assert!(self.cloth.is_parallel(x), "tied groups are parallel");
         self.mixed.clear();
         self.settle(curves, x, settings)
     }
@@ -240,6 +256,8 @@ impl<'a> Solver<'a> {
     fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         let before = self.factor.count;
         let mut iterations = 0;
+        self.damping = 0.0;
+        self.clamped = 0;
         let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
         // An angle at a collapsed wing has a finite energy and forces that are not.
         let finite = energy.is_finite() && self.cloth.norm(&self.gradient).is_finite();
@@ -354,12 +372,21 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// The mixed matrix; where it is not positive definite, the clamped one.
+    /// The mixed matrix; where it is not positive definite, the damped one; where that is not either, the clamped one.
     fn factorise_newton(&mut self, curves: &Curves, x: &[f64]) -> bool {
         let mixed = if self.mixed.is_empty() { Curvature::Full } else { Curvature::Mixed(&self.mixed) };
         self.cloth.hessian(curves, x, mixed, &mut self.values);
-        if self.factorise(0.0) {
+        let mean = self.mean_diagonal();
+        if self.factorise(self.damping * mean) {
+            self.damping = if self.damping > LEAST_DAMPING { 0.1 * self.damping } else { 0.0 };
             return true;
+        }
+        self.clamped += 1;
+        if self.damping < DAMPING && self.clamped > CLAMPED_STEPS {
+            self.damping = DAMPING;
+            if self.factorise(DAMPING * mean) {
+                return true;
+            }
         }
         self.cloth.hessian(curves, x, Curvature::Clamped, &mut self.values);
         // A clamped matrix may still be singular, as where nothing but bending holds a flat sheet.

@@ -9,6 +9,7 @@
 use cloth_sim::cloth::{Cloth, ForceScale, Problem};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::element::Curvature;
+use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::finite_difference::derivative_error;
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::{Diagonals, Grid};
@@ -100,25 +101,76 @@ fn the_hessian_and_the_clip_border_are_derivatives_of_the_gradient() {
     }
 }
 
+/// Every group's nodes as far apart as they are at rest.
+fn parallel(mut sample: Sample, tied: &[Vec<usize>]) -> Sample {
+    for group in tied {
+        for &node in group {
+            let offset = sample.mesh.positions[node] - sample.mesh.positions[group[0]];
+            (0..3).for_each(|i| sample.start[3 * node + i] = sample.start[3 * group[0] + i] + offset[i]);
+        }
+    }
+    sample
+}
+
+fn tied_cloth(sample: &Sample, tied: &[Vec<usize>]) -> Cloth {
+    let components: Vec<Component> = sample.curves.components().collect();
+    Cloth::new(&Problem {
+        mesh: &sample.mesh,
+        model: sample.model,
+        components: &components,
+        areal_density: sample.areal_density,
+        gravity: sample.gravity,
+        held: &sample.held,
+        tied,
+        planar: sample.planar,
+    })
+    .unwrap()
+}
+
+/// The columns of the crumpled sheet.
+fn lines() -> Vec<Vec<usize>> {
+    (0..4).map(|column| (0..5).map(|row| 4 * row + column).collect()).collect()
+}
+
+#[test]
+fn one_element_stands_for_all_between_parallel_lines() {
+    for (name, sample) in cases() {
+        let sample = parallel(sample, &lines());
+        let [cloth, plain] = [tied_cloth(&sample, &lines()), sample.cloth().unwrap()];
+        let count = |cloth: &Cloth| cloth.strains(Component::Shear, &sample.start).len();
+        assert!(2 * count(&cloth) <= count(&plain), "{name}: {} of {}", count(&cloth), count(&plain));
+        let [(energy, tied, _), (plain_energy, forces, _)] =
+            [&cloth, &plain].map(|cloth| gradient(cloth, &sample.curves, &sample.start));
+        assert!((energy / plain_energy - 1.0).abs() < 1e-12, "{name}: {energy:e}, {plain_energy:e}");
+        let largest = forces.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+        let sum = |forces: &[f64], line: &[usize], i| line.iter().map(|node| forces[3 * node + i]).sum::<f64>();
+        for line in lines() {
+            for i in 0..3 {
+                let apart = sum(&tied, &line, i) - sum(&forces, &line, i);
+                assert!(apart.abs() < 1e-12 * largest, "{name}: {apart:e} of {largest:e}");
+            }
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "tied groups are parallel")]
+fn lines_that_are_not_parallel_are_refused() {
+    let sample = crumpled(Model::Stvk, false);
+    let mut x = sample.start.clone();
+    let cloth = tied_cloth(&sample, &lines());
+    let _ = Solver::new(&cloth).solve(&sample.curves, &mut x, &Settings::default());
+}
+
 #[test]
 fn nodes_that_move_alike_share_their_unknowns() {
     for (name, sample) in cases() {
         let held = |node: &usize| !sample.held.iter().any(|held| held.node == *node);
         let free: Vec<usize> = (0..sample.mesh.len()).filter(held).collect();
-        // Groups of neighbours, which share elements, and of nodes apart.
+        // Groups of neighbours, which share elements, and of nodes apart; as far apart as they are at rest.
         let tied = vec![free[..4].to_vec(), vec![free[5], free[free.len() - 1]]];
-        let components: Vec<Component> = sample.curves.components().collect();
-        let cloth = Cloth::new(&Problem {
-            mesh: &sample.mesh,
-            model: sample.model,
-            components: &components,
-            areal_density: sample.areal_density,
-            gravity: sample.gravity,
-            held: &sample.held,
-            tied: &tied,
-            planar: sample.planar,
-        })
-        .unwrap();
+        let sample = parallel(sample, &tied);
+        let cloth = tied_cloth(&sample, &tied);
         let plain = sample.cloth().unwrap();
         assert_eq!(plain.unknowns() - cloth.unknowns(), 4 * if sample.planar { 2 } else { 3 });
         let mut values = Vec::new();

@@ -144,13 +144,13 @@ impl Lines {
         square.sqrt() / line.len() as f64
     }
 
-    /// All lines but the first few, which are held. Each moves as a whole, so that the sheet bends as a cylinder.
+    /// The nodes of every line. Each moves as a whole, so that the sheet bends as a cylinder.
     ///
     /// Hinges of a triangulated sheet tie bending to twist: split all one way, a sheet hung off a table twists (by 5 mm at
     /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it a fifth softer. A cylinder knows
     /// neither: its flexural rigidity is 3 × the hinges' stiffness, as the curve files say.
-    pub(super) fn beyond(&self, lines: usize) -> &[Vec<usize>] {
-        &self.nodes[lines..]
+    pub(super) fn all(&self) -> &[Vec<usize>] {
+        &self.nodes
     }
 
     /// From the edge to the tip, m; `None` if the sheet does not reach the edge.

@@ -31,7 +31,7 @@ impl Solver<'_> {
     /// leave unstable states as a solve may.
     ///
     /// # Panics
-    /// If `x` or `target` has another length than the cloth has coordinates.
+    /// If `x` or `target` has another length than the cloth has coordinates, or `x` tied groups that are not parallel.
     pub fn drive(
         &mut self,
         curves: &Curves,
@@ -40,6 +40,7 @@ impl Solver<'_> {
         settings: &Settings,
     ) -> Equilibrium {
         assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
+        assert!(self.cloth.is_parallel(x), "tied groups are parallel");
         let before = self.factor.count;
         let clips = motions(self.cloth, x, target);
         let limited = Settings { max_iterations: settings.max_iterations.min(ITERATIONS), ..*settings };

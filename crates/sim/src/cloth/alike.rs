@@ -1,0 +1,106 @@
+//! Elements that parallel groups of nodes make alike: one is computed, and stands for all.
+//!
+//! ```text
+//! ●───●───●───●     line, moves as a whole       every cell between two parallel lines has the strains of the first:
+//! │ ╱ │ ╲ │ ╱ │                                  a sheet that bends as a cylinder costs no more than a strip two cells
+//! ●───●───●───●     line                         wide (one, if all cells are split alike)
+//! ```
+
+use crate::bending::Bending;
+use crate::membrane::Membrane;
+use crate::mesh::Mesh;
+use std::collections::HashMap;
+
+/// Offsets at rest that differ by less than this share of the mean edge are the same.
+const SAME_OFFSET: f64 = 1e-6;
+
+/// Nodes of an element that was left out, and of the one that stands for it.
+type Twins = [Vec<usize>; 2];
+
+/// Which elements are alike.
+pub(super) struct Alike<'a> {
+    mesh: &'a Mesh,
+    /// The first node of each node's group.
+    leader: &'a [usize],
+    mean_edge: f64,
+    twins: Vec<Twins>,
+}
+
+/// What alike elements share: the groups of their nodes, and the nodes' offsets from the first in multiples of the smallest
+/// that counts.
+type Key = (Vec<usize>, Vec<i64>);
+
+impl<'a> Alike<'a> {
+    pub(super) fn new(mesh: &'a Mesh, leader: &'a [usize], mean_edge: f64) -> Self {
+        Self { mesh, leader, mean_edge, twins: Vec::new() }
+    }
+
+    /// Leaves out what others stand for; returns what was left out.
+    pub(super) fn merge(mut self, membrane: &mut Membrane, bending: &mut Option<Bending>) -> Vec<Twins> {
+        match membrane {
+            Membrane::Springs(springs) => self.merge_all(springs, |s| s.nodes.to_vec(), |s| &mut s.area),
+            Membrane::SoftConstraint(triangles) => {
+                self.merge_all(triangles, |t| t.0.nodes.to_vec(), |t| &mut t.0.area);
+            }
+            Membrane::Stvk(triangles) => {
+                self.merge_all(triangles, |t| t.0.nodes.to_vec(), |t| &mut t.0.area);
+            }
+        }
+        match bending {
+            Some(Bending::Springs(springs)) => {
+                self.merge_all(springs, |s| s.nodes.to_vec(), |s| &mut s.area);
+            }
+            Some(Bending::DiscreteShells(hinges)) => {
+                self.merge_all(hinges, |h| h.nodes.to_vec(), |h| &mut h.rest_length);
+            }
+            None => {}
+        }
+        self.twins
+    }
+
+    /// * `extent` — an element's area, or what that is proportional to
+    fn merge_all<E>(
+        &mut self,
+        elements: &mut Vec<E>,
+        nodes: impl Fn(&E) -> Vec<usize>,
+        extent: impl Fn(&mut E) -> &mut f64,
+    ) {
+        let mut kept: Vec<E> = Vec::new();
+        let mut place_of: HashMap<Key, usize> = HashMap::new();
+        for mut element in elements.drain(..) {
+            let own = nodes(&element);
+            match place_of.get(&self.key(&own)) {
+                Some(&place) => {
+                    self.twins.push([own, nodes(&kept[place])]);
+                    *extent(&mut kept[place]) += *extent(&mut element);
+                }
+                None => {
+                    place_of.insert(self.key(&own), kept.len());
+                    kept.push(element);
+                }
+            }
+        }
+        *elements = kept;
+    }
+
+    fn key(&self, nodes: &[usize]) -> Key {
+        let unit = SAME_OFFSET * self.mean_edge;
+        let offsets = nodes.iter().flat_map(|&node| {
+            let offset = self.mesh.positions[node] - self.mesh.positions[nodes[0]];
+            let material = self.mesh.material[node] - self.mesh.material[nodes[0]];
+            [offset.x, offset.y, offset.z, material.x, material.y].map(|c| (c / unit).round() as i64)
+        });
+        (nodes.iter().map(|&node| self.leader[node]).collect(), offsets.collect())
+    }
+}
+
+/// True if elements that stand for others have the shape of those in a state.
+pub(super) fn are_alike(twins: &[Twins], x: &[f64], mean_edge: f64) -> bool {
+    twins.iter().all(|nodes| {
+        let offset = |nodes: &[usize], node: usize, i: usize| x[3 * node + i] - x[3 * nodes[0] + i];
+        nodes[0].iter().zip(&nodes[1]).all(|(&left_out, &kept)| {
+            let apart = |i| offset(&nodes[0], left_out, i) - offset(&nodes[1], kept, i);
+            (0..3).all(|i| apart(i).abs() <= SAME_OFFSET * mean_edge)
+        })
+    })
+}
