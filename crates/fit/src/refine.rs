@@ -18,7 +18,8 @@ use std::time::Instant;
 /// So many numbers of points in a row that do not pay are the end.
 const TRIES: usize = 2;
 
-/// A level's residuals are whitened anew at its minimum until that moves by less than this share, or so often.
+/// Residuals are whitened anew once at the minimum of every level, which is compared with others; of the one that is kept
+/// until that moves by less than this share, or so often.
 const SETTLED: f64 = 1e-5;
 const MOST_WHITENINGS: usize = 4;
 
@@ -78,7 +79,7 @@ pub fn grow(
     let mut tries = 0;
     loop {
         let points = curve.len();
-        let (outcome, domain, level) = fit_level(simulation, &curve, settings, lowest_tangent, watch)?;
+        let (outcome, domain, level) = fit_level(simulation, &curve, 1, settings, lowest_tangent, watch)?;
         let rms = level.rms;
         levels.push(level);
         curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
@@ -113,7 +114,16 @@ pub fn grow(
                     100.0 * settings.growth_gain
                 ),
             };
-            let (curve, outcome, domain, _) = best;
+            let (mut curve, mut outcome, domain, _) = best;
+            if simulation.is_whitened() {
+                let (settled, _, level) =
+                    fit_level(simulation, &curve, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
+                if !settled.residual.is_empty() {
+                    curve = curve.with_stiffnesses(settled.point.iter().copied().collect())?;
+                    outcome = settled;
+                    levels.iter_mut().filter(|l| l.points == curve.len()).for_each(|l| l.go_on(&level));
+                }
+            }
             return Ok(Growth { curve, outcome, domain, levels, stopped });
         }
         kept = Some(best);
@@ -133,16 +143,20 @@ pub fn refit(
 ) -> Result<Growth> {
     let points = simulation.curve().len();
     let start = simulation.curve().resampled(points, simulation.reach())?;
-    let (outcome, domain, level) = fit_level(simulation, &start, settings, lowest_tangent, watch)?;
+    let (outcome, domain, level) =
+        fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
     let curve = start.with_stiffnesses(outcome.point.iter().copied().collect())?;
     let stopped = format!("all {points} control points of the pass before are fitted again");
     Ok(Growth { curve, outcome, domain, levels: vec![level], stopped })
 }
 
 /// One level: a fit with a fixed number of control points.
+///
+/// * `whitenings` — residuals are whitened anew so often at most
 fn fit_level(
     simulation: &mut Simulation<'_>,
     curve: &StiffnessCurve,
+    whitenings: usize,
     settings: &Settings,
     lowest_tangent: f64,
     watch: &mut Watch<'_>,
@@ -178,7 +192,7 @@ fn fit_level(
     };
     let mut outcome = fit_from(simulation, &DVector::from_column_slice(curve.stiffnesses()));
     // How errors of what is held enter depends on the shapes: those of the minimum count, wherever the fit started.
-    for _ in 0..MOST_WHITENINGS {
+    for _ in 0..whitenings {
         if !simulation.is_whitened() || outcome.residual.is_empty() {
             break;
         }

@@ -26,6 +26,9 @@ const FLATTENING_STRAIN: f64 = 1e-5;
 /// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
 const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
 
+/// Bending strains of rounding, 1/m: those of springs, which have no unit, are as small.
+const FLAT: f64 = 1e-9;
+
 /// What replicas are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts {
@@ -212,6 +215,15 @@ impl Replica {
     /// True if the sheet lies on a table.
     pub fn is_on_table(&self) -> bool {
         self.lines.is_some()
+    }
+
+    /// True if it tells of a component. A sheet that bends as a cylinder leaves hinges across its lines flat.
+    pub fn shows(&self, component: Component) -> bool {
+        let bends = |component: Component| {
+            let strains = self.frames.iter().flat_map(|f| self.cloth(f).strains(component, &f.start));
+            component.is_bending() && strains.into_iter().any(|[strain, _]| strain.abs() > FLAT)
+        };
+        !self.is_on_table() || bends(component) || !Component::ALL.into_iter().any(bends)
     }
 
     /// The sheet at rest, 3 stacked coordinates a node, m.

@@ -128,6 +128,17 @@ pub struct Level {
     pub iterations: Vec<Iteration>,
 }
 
+impl Level {
+    /// Adds a later fit with as many control points.
+    pub(crate) fn go_on(&mut self, later: &Self) {
+        let done = self.iterations.len();
+        let numbered = |step: &Iteration| Iteration { iteration: done + step.iteration, ..step.clone() };
+        self.iterations.extend(later.iterations.iter().map(numbered));
+        self.rms = later.rms;
+        self.status.clone_from(&later.status);
+    }
+}
+
 /// What a stage took as known.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

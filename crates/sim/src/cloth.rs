@@ -17,7 +17,7 @@ use crate::load::{Held, lumped_masses};
 use crate::material::{Component, Curves, Model};
 use crate::membrane::Membrane;
 use crate::mesh::{Edge, Mesh};
-use alike::{Alike, are_alike};
+use alike::{Alike, Twins, are_alike};
 use nalgebra::Vector3;
 use numbering::{GraphPass, ScatterPass, columns, leaders, number};
 use std::collections::{BTreeMap, BTreeSet};
@@ -62,7 +62,7 @@ pub struct Cloth {
     /// Mean length of the rest mesh's edges, m.
     mean_edge: f64,
     /// Elements that were left out, and those that stand for them: their nodes.
-    twins: Vec<[Vec<usize>; 2]>,
+    twins: Vec<Twins>,
     /// Index into stacked coordinates of every unknown; of a group that moves alike, its first node's.
     unknowns: Vec<usize>,
     /// Every coordinate that is not held, and its unknown.
@@ -110,7 +110,7 @@ impl Cloth {
         let neighbours = graph.led(&leader);
         let moves: Vec<bool> = (0..mesh.len()).map(|node| !held[node] && leader[node] == node).collect();
         let dimensions = if planar { 2 } else { 3 };
-        let unknowns = number(&moves, &neighbours, dimensions);
+        let unknowns = number(&moves, &neighbours, &mesh.positions, dimensions);
         let mut unknown_of = vec![HELD; 3 * mesh.len()];
         unknowns.iter().enumerate().for_each(|(unknown, &coordinate)| unknown_of[coordinate] = unknown);
         let columns = columns(&unknowns, &unknown_of, &neighbours);
@@ -438,7 +438,8 @@ fn check(problem: &Problem<'_>) -> Result<()> {
     if let Some(held) = problem.held.iter().find(|held| held.node >= mesh.len()) {
         return Err(Error::ShapeMismatch { what: "held node", expected: mesh.len(), found: held.node });
     }
-    let held: BTreeMap<usize, Option<usize>> = problem.held.iter().map(|held| (held.node, held.clip)).collect();
+    let held: BTreeMap<usize, Option<usize>> =
+        problem.held.iter().map(|held| (held.node, held.clip)).collect();
     let mut seen = BTreeSet::new();
     let mut unfit = |group: &[usize], node: usize| {
         node >= mesh.len() || held.get(&node) != held.get(&group[0]) || !seen.insert(node)

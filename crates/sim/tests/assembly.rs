@@ -143,7 +143,8 @@ fn one_element_stands_for_all_between_parallel_lines() {
             [&cloth, &plain].map(|cloth| gradient(cloth, &sample.curves, &sample.start));
         assert!((energy / plain_energy - 1.0).abs() < 1e-12, "{name}: {energy:e}, {plain_energy:e}");
         let largest = forces.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
-        let sum = |forces: &[f64], line: &[usize], i| line.iter().map(|node| forces[3 * node + i]).sum::<f64>();
+        let sum =
+            |forces: &[f64], line: &[usize], i| line.iter().map(|node| forces[3 * node + i]).sum::<f64>();
         for line in lines() {
             for i in 0..3 {
                 let apart = sum(&tied, &line, i) - sum(&forces, &line, i);

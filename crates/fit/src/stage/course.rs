@@ -57,7 +57,9 @@ impl Plan {
             flat: self.flat || kind == Kind::StretchBias,
         };
         let shows = set.sequences.iter().filter(|sequence| self.kinds.contains(&sequence.kind));
-        shows.map(|sequence| Replica::new(sequence, &parts(sequence.kind))).collect()
+        let replicas = shows.map(|sequence| Replica::new(sequence, &parts(sequence.kind)));
+        let strained = |replica: &Replica| self.fitted.iter().any(|&component| replica.shows(component));
+        replicas.filter(|replica| replica.as_ref().map_or(true, strained)).collect()
     }
 }
 

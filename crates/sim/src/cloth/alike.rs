@@ -9,13 +9,13 @@
 use crate::bending::Bending;
 use crate::membrane::Membrane;
 use crate::mesh::Mesh;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Offsets at rest that differ by less than this share of the mean edge are the same.
 const SAME_OFFSET: f64 = 1e-6;
 
-/// Nodes of an element that was left out, and of the one that stands for it.
-type Twins = [Vec<usize>; 2];
+/// Two nodes of an element that was left out, and those of the one that stands for it.
+pub(super) type Twins = [[usize; 2]; 2];
 
 /// Which elements are alike.
 pub(super) struct Alike<'a> {
@@ -23,7 +23,7 @@ pub(super) struct Alike<'a> {
     /// The first node of each node's group.
     leader: &'a [usize],
     mean_edge: f64,
-    twins: Vec<Twins>,
+    twins: BTreeSet<Twins>,
 }
 
 /// What alike elements share: the groups of their nodes, and the nodes' offsets from the first in multiples of the smallest
@@ -32,7 +32,7 @@ type Key = (Vec<usize>, Vec<i64>);
 
 impl<'a> Alike<'a> {
     pub(super) fn new(mesh: &'a Mesh, leader: &'a [usize], mean_edge: f64) -> Self {
-        Self { mesh, leader, mean_edge, twins: Vec::new() }
+        Self { mesh, leader, mean_edge, twins: BTreeSet::new() }
     }
 
     /// Leaves out what others stand for; returns what was left out.
@@ -55,7 +55,7 @@ impl<'a> Alike<'a> {
             }
             None => {}
         }
-        self.twins
+        self.twins.into_iter().collect()
     }
 
     /// * `extent` — an element's area, or what that is proportional to
@@ -71,7 +71,10 @@ impl<'a> Alike<'a> {
             let own = nodes(&element);
             match place_of.get(&self.key(&own)) {
                 Some(&place) => {
-                    self.twins.push([own, nodes(&kept[place])]);
+                    let stands = nodes(&kept[place]);
+                    let pairs = own[1..].iter().zip(&stands[1..]);
+                    self.twins
+                        .extend(pairs.map(|(&left_out, &kept)| [[own[0], left_out], [stands[0], kept]]));
                     *extent(&mut kept[place]) += *extent(&mut element);
                 }
                 None => {
@@ -96,11 +99,8 @@ impl<'a> Alike<'a> {
 
 /// True if elements that stand for others have the shape of those in a state.
 pub(super) fn are_alike(twins: &[Twins], x: &[f64], mean_edge: f64) -> bool {
-    twins.iter().all(|nodes| {
-        let offset = |nodes: &[usize], node: usize, i: usize| x[3 * node + i] - x[3 * nodes[0] + i];
-        nodes[0].iter().zip(&nodes[1]).all(|(&left_out, &kept)| {
-            let apart = |i| offset(&nodes[0], left_out, i) - offset(&nodes[1], kept, i);
-            (0..3).all(|i| apart(i).abs() <= SAME_OFFSET * mean_edge)
-        })
+    twins.iter().all(|[left_out, kept]| {
+        let offset = |[from, to]: &[usize; 2], i: usize| x[3 * to + i] - x[3 * from + i];
+        (0..3).all(|i| (offset(left_out, i) - offset(kept, i)).abs() <= SAME_OFFSET * mean_edge)
     })
 }

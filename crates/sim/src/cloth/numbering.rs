@@ -3,10 +3,18 @@
 use super::HELD;
 use crate::element::{Element, Pass, lower_entries};
 use crate::linear::{Pattern, order};
+use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
 /// Unknowns in an order of the nodes that keeps the factor sparse, the coordinates of a node together.
-pub(super) fn number(moves: &[bool], neighbours: &[BTreeSet<usize>], coordinates: usize) -> Vec<usize> {
+///
+/// * `places` — of all nodes at rest, m
+pub(super) fn number(
+    moves: &[bool],
+    neighbours: &[BTreeSet<usize>],
+    places: &[Vector3<f64>],
+    coordinates: usize,
+) -> Vec<usize> {
     let free: Vec<usize> = (0..moves.len()).filter(|&node| moves[node]).collect();
     let mut place = vec![HELD; moves.len()];
     free.iter().enumerate().for_each(|(index, &node)| place[node] = index);
@@ -16,7 +24,8 @@ pub(super) fn number(moves: &[bool], neighbours: &[BTreeSet<usize>], coordinates
             neighbours[node].iter().map(|&other| place[other]).filter(|&other| other != HELD).collect()
         })
         .collect();
-    order(&graph)
+    let places: Vec<Vector3<f64>> = free.iter().map(|&node| places[node]).collect();
+    order(&graph, &places)
         .into_iter()
         .flat_map(|index| (0..coordinates).map(move |i| (index, i)))
         .map(|(index, i)| 3 * free[index] + i)
