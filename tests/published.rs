@@ -99,16 +99,11 @@ fn what_a_table_holds_decides_the_rigidity() {
 }
 
 #[test]
-#[ignore = "the whole published method on a free sheet: minutes"]
-fn the_whole_published_method_on_a_table() {
-    let ours = Settings::default();
-    let from_measurements =
-        Settings { first_stiffness: FirstStiffness::FromMeasurements, ..ours.clone().as_published() };
-    for (name, settings) in [
-        ("ours", ours.clone()),
-        ("as published, but for where it starts", from_measurements),
-        ("as published", ours.as_published()),
-    ] {
-        let _ = found(name, settings);
-    }
+fn the_whole_published_method_is_too_stiff_wherever_it_starts() {
+    let published = Settings::default().as_published();
+    let first_stiffness = FirstStiffness::FromMeasurements;
+    let elsewhere = Settings { first_stiffness, ..published.clone() };
+    let [one, other] =
+        [found("as published", published), found("as published, from Peirce's start", elsewhere)];
+    assert!((1.4..2.2).contains(&one) && (one / other - 1.0).abs() < 0.02, "{one} {other}");
 }

@@ -58,13 +58,16 @@ pub(super) fn start(
     knowledge: &Knowledge,
     settings: &Settings,
 ) -> Result<Start> {
-    let stiffness = match plan.objective {
+    // What stands for other curves is no start, and stays what the measurements say.
+    let [stiffness, measured] = match plan.objective {
         Objective::Forces => {
-            let constant = settings.first_stiffness.of_membrane(plan.fitted[0]);
-            constant.unwrap_or(from_forces(plan, replicas, settings)?)
+            let measured = from_forces(plan, replicas, settings)?;
+            [settings.first_stiffness.of_membrane(plan.fitted[0]).unwrap_or(measured), measured]
         }
         Objective::Positions => {
-            from_shapes(plan, replicas, settings)?.min(most_that_bends(plan, knowledge.curves(), settings))
+            let most = most_that_bends(plan, knowledge.curves(), settings);
+            let from = |rigidity| from_shapes(plan, replicas, rigidity).map(|stiffness| stiffness.min(most));
+            [from(settings.first_stiffness.of_bending())?, from(None)?]
         }
     };
     let mut known = knowledge.without(&plan.fitted).curves().clone();
@@ -74,13 +77,13 @@ pub(super) fn start(
             continue;
         }
         let negative = settings.model.negative_strain(component, settings.compression);
-        let constant = assumption(plan, replicas, component, stiffness, knowledge.curves());
+        let constant = assumption(plan, replicas, component, measured, knowledge.curves());
         known.set(component, StiffnessCurve::constant(constant, negative).map_err(mechanics(plan))?);
         assumed.push(component);
     }
     let largest = match plan.objective {
-        Objective::Forces => largest_from_forces(plan, replicas, stiffness, settings)?,
-        Objective::Positions => stiffness,
+        Objective::Forces => largest_from_forces(plan, replicas, measured, settings)?,
+        Objective::Positions => measured,
     };
     Ok(Start { stiffness: stiffness * settings.start_factor, largest, known, assumed })
 }
@@ -174,16 +177,16 @@ fn most_that_bends(plan: &Plan, known: &Curves, settings: &Settings) -> f64 {
     if settings.model == Model::Springs && largest > 0.0 { largest } else { f64::INFINITY }
 }
 
-/// The median over all frames of the stiffness that Peirce's formula gives, or of that which gives a constant rigidity.
-fn from_shapes(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result<f64> {
-    let constant = settings.first_stiffness.of_bending();
+/// The median over all frames of the stiffness that Peirce's formula gives; of that which gives a rigidity, N·m, if one is
+/// given.
+fn from_shapes(plan: &Plan, replicas: &[Replica], given: Option<f64>) -> Result<f64> {
     let mut found: Vec<f64> = Vec::new();
     for replica in replicas {
         for frame in &replica.frames {
             let bending = replica.cloth(frame).bending();
             let rolled = plan.fitted.iter().find_map(|&component| bending?.rolled(component));
             if let (Some(rolled), Some([rigidity, curvature])) = (rolled, replica.peirce(frame)) {
-                let rigidity = constant.unwrap_or(rigidity);
+                let rigidity = given.unwrap_or(rigidity);
                 let stress = rigidity * curvature / rolled.lever(curvature);
                 found.push(stress / rolled.strain(curvature));
             }
