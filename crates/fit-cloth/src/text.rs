@@ -10,7 +10,7 @@ mod verdict;
 pub use comparison::comparison;
 pub use residuals::residuals;
 pub use stage::stage;
-pub use summary::{missing, summary};
+pub use summary::{as_published, missing, summary};
 pub use validation::validation;
 pub use verdict::verdict;
 

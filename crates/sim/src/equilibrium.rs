@@ -46,7 +46,10 @@ impl Default for Settings {
 pub enum Method {
     /// Mixed Newton, Levenberg–Marquardt if that comes to nothing.
     MixedNewton,
-    /// The full Hessian + μI throughout, as published.
+    /// The full Hessian + μI throughout, for the sensitivities too, as published. Stability is not checked: what is balanced
+    /// has converged.
+    ///
+    /// Source: Miguel et al. 2012, §5.1; how μ is chosen is ours.
     LevenbergMarquardt,
 }
 
@@ -62,7 +65,7 @@ pub enum Tolerance {
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// A stable equilibrium.
+    /// A stable equilibrium; with Levenberg–Marquardt, any equilibrium.
     Converged,
     /// Balanced, but the stiffness matrix is not positive definite: the cloth would leave this state at a touch.
     Unstable,
@@ -146,8 +149,9 @@ const CHORD_CONTRACTION: f64 = 0.5;
 /// a poor start.
 const CLAMPED_STEPS: usize = 2;
 
-/// μ, as a share of the mean of the diagonal, for further ones, as where a sheet is about to buckle: clamping would stiffen
-/// the way into the buckle a hundredfold. It falls to a tenth from step to step, and below the least to nothing.
+/// Further ones are damped, as where a sheet is about to buckle: clamping would stiffen the way into the buckle a
+/// hundredfold. μ, as a share of the mean of the diagonal, falls to a tenth from step to step, and below the least to
+/// nothing. Levenberg–Marquardt starts with it too.
 const DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 2e-6;
 
@@ -205,7 +209,7 @@ impl<'a> Solver<'a> {
     /// * `x` — 3 stacked coordinates a node, m; held nodes at their prescribed places, where they stay
     ///
     /// On return [`Solver::solve_linear`] works with the true stiffness matrix there (where that is not positive
-    /// definite: shifted until it is).
+    /// definite: shifted until it is); with Levenberg–Marquardt as the method, with that + μI, μ of the last step.
     ///
     /// # Panics
     /// If `x` has another length than the cloth has coordinates, or tied groups that are not parallel.
@@ -268,10 +272,14 @@ impl<'a> Solver<'a> {
         if status == Status::Stalled {
             status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
         }
-        if status != Status::NotFinite {
-            let stable = self.factorise_true_hessian(curves, x);
-            if status == Status::Converged && !stable {
-                status = Status::Unstable;
+        match settings.method {
+            _ if status == Status::NotFinite => (),
+            Method::LevenbergMarquardt => self.factorise_damped(curves, x),
+            Method::MixedNewton => {
+                let stable = self.factorise_true_hessian(curves, x);
+                if status == Status::Converged && !stable {
+                    status = Status::Unstable;
+                }
             }
         }
         let (imbalance, tolerance, limit) = self.balance(x, settings);
@@ -403,6 +411,14 @@ impl<'a> Solver<'a> {
         stable
     }
 
+    /// The true matrix + μI with the μ of the last step; ten times more, and so on, where it is not positive definite.
+    fn factorise_damped(&mut self, curves: &Curves, x: &[f64]) {
+        let last = self.shift;
+        self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+        let least = if last > 0.0 { last } else { DAMPING * self.mean_diagonal() };
+        let _ = (0..16).any(|power| self.factorise(least * 10f64.powi(power)));
+    }
+
     /// Adds μ to the diagonal, ten times more each time, until the matrix is positive definite.
     fn factorise_shifted(&mut self) -> bool {
         let mean = self.mean_diagonal();
@@ -499,6 +515,8 @@ impl<'a> Solver<'a> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
+        // Before the first step there is no μ, whatever a former solve has left.
+        self.shift = 0.0;
         let mut shift = None;
         while *iterations < settings.max_iterations {
             if self.is_balanced(x, settings) {
@@ -506,7 +524,7 @@ impl<'a> Solver<'a> {
             }
             self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
             let mean = self.mean_diagonal();
-            let mut damping = shift.unwrap_or(1e-3 * mean);
+            let mut damping = shift.unwrap_or(DAMPING * mean);
             let norm = self.cloth.norm(&self.gradient);
             *iterations += 1;
             loop {
