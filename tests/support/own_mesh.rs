@@ -23,7 +23,7 @@ fn plan(kind: Kind) -> Plan {
             stretch::plan(&[Component::StretchWeft, Component::StretchWarp])
         }
         Kind::Shear | Kind::StretchBias => shear::plan(1),
-        _ => bend::plan(&[Component::BendWeft], 1),
+        _ => bend::plan(&[Component::BendWeft, Component::BendWarp, Component::BendDiagonal], 1),
     }
 }
 
@@ -44,6 +44,7 @@ pub fn equilibria<T>(
     plan.kinds = vec![sequence.kind];
     plan.components.retain(|&component| curves.get(component).is_some());
     let replicas: Vec<Replica> = plan.replicas(&alone, settings).expect("a sequence that can be simulated");
+    assert!(!replicas.is_empty(), "{} shows nothing", sequence.name);
     let task = Task {
         fitted: Vec::new(),
         objective: Objective::Forces,

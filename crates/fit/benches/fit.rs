@@ -54,6 +54,26 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// The published method and ours on every fifth frame: it needs minutes for these.
+fn against_published(set: &MeasurementSet, settings: &Settings, cores: usize) -> Result<()> {
+    let mut thin = set.clone();
+    for sequence in &mut thin.sequences {
+        let frames = sequence.frames.iter().step_by(5);
+        sequence.frames = frames.cloned().collect();
+    }
+    let published = settings.clone().as_published();
+    let (ours, seconds) = fit(&thin, settings, cores)?;
+    let (theirs, seconds_published) = fit(&thin, &published, cores)?;
+    stages(&thin, settings, &ours, cores)?;
+    stages(&thin, &published, &theirs, cores)?;
+    println!(
+        "every fifth frame: {seconds:.2} s, as published {seconds_published:.2} s ({:.1} times)",
+        seconds_published / seconds
+    );
+    compare(&ours, &theirs);
+    Ok(())
+}
+
 /// Six sequences of about 50 frames each.
 fn measured() -> Result<MeasurementSet> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/fabrics/cotton-denim.toml");

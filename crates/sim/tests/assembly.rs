@@ -124,7 +124,7 @@ fn tied_cloth(sample: &Sample, tied: &[Vec<usize>]) -> Cloth {
         tied,
         planar: sample.planar,
     })
-    .unwrap()
+    .expect("groups that are held or free")
 }
 
 /// The columns of the crumpled sheet.

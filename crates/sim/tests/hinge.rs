@@ -207,7 +207,7 @@ fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
 fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
     let (density, overhang) = (0.2, 0.085);
     let rigidity = density * samples::GRAVITY * overhang * overhang * overhang / 10.0;
-    let mesh = samples::square(25, diagonals).unwrap();
+    let mesh = samples::square(25, diagonals).expect("a proper square");
     let lines: Vec<Vec<usize>> =
         (0..25).map(|column| (0..25).map(|row| row * 25 + column).collect()).collect();
     // The sheet bends from the middle between its fourth and fifth line on, which is 85 mm from its tip.
@@ -220,7 +220,7 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
             _ => rigidity / HINGE_STRAIN_PER_CURVATURE,
         };
         let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
-        (component, StiffnessCurve::constant(stiffness, negative).unwrap())
+        (component, StiffnessCurve::constant(stiffness, negative).expect("a proper curve"))
     };
     let curves: Curves = Component::ALL.into_iter().map(curve).collect();
     let cloth = Cloth::new(&Problem {
@@ -233,7 +233,7 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
         tied: if as_cylinder { free } else { &[] },
         planar: false,
     })
-    .unwrap();
+    .expect("a sheet that is held");
     let mut x: Vec<f64> = mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
     let found = Solver::new(&cloth).solve(&curves, &mut x, &Settings::default());
     assert!(found.converged(), "{}", found.status);
