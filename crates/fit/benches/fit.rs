@@ -41,14 +41,7 @@ fn main() -> Result<()> {
         );
         if nodes == 25 {
             jacobian(&set, &settings, &report)?;
-            let published = settings.clone().as_published();
-            let (theirs, seconds_published) = fit(&set, &published, cores)?;
-            stages(&set, &published, &theirs, cores)?;
-            println!(
-                "as published: {seconds_published:.2} s, {:.1} times as long",
-                seconds_published / seconds
-            );
-            compare(&report, &theirs);
+            against_published(&set, &settings, cores)?;
         }
     }
     Ok(())
