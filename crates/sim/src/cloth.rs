@@ -90,7 +90,9 @@ impl Cloth {
         let mut bending = Bending::new(model, mesh, components)?;
         let mean_edge = mean_edge(mesh)?;
         let leader = leaders(mesh.len(), problem.tied);
-        let twins = Alike::new(mesh, &leader, mean_edge).merge(&mut membrane, &mut bending);
+        let alike = Alike::new(mesh, &leader, mean_edge);
+        let twins =
+            if problem.tied.is_empty() { Vec::new() } else { alike.merge(&mut membrane, &mut bending) };
         let weights = if problem.gravity == Vector3::zeros() {
             Vec::new()
         } else {
