@@ -1,0 +1,52 @@
+//! How equilibria and fits are solved: as they are by default, or as published.
+
+use cloth_fit::stage::{Constraints, Settings};
+use cloth_sim::equilibrium::{self, Method, Tolerance};
+
+/// The method of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solver {
+    /// The program's own settings.
+    Default,
+    /// The published method: Levenberg–Marquardt, an absolute tolerance, control values that are not negative.
+    AsPublished,
+}
+
+impl Solver {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Default, Self::AsPublished];
+
+    /// How it finds equilibria.
+    pub fn equilibrium(self) -> equilibrium::Settings {
+        self.settings(Settings::default()).equilibrium
+    }
+
+    /// The settings of a fit by it.
+    pub fn settings(self, settings: Settings) -> Settings {
+        match self {
+            Self::Default => settings,
+            Self::AsPublished => as_published(settings),
+        }
+    }
+}
+
+fn as_published(mut settings: Settings) -> Settings {
+    settings.equilibrium = equilibrium::Settings {
+        method: Method::LevenbergMarquardt,
+        tolerance: Tolerance::Absolute(1e-5),
+        escape: false,
+        ..settings.equilibrium
+    };
+    settings.constraints = Constraints::ControlPoints;
+    settings.outer.gain_tolerance = 0.01;
+    settings
+}
+
+impl std::fmt::Display for Solver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Default => "default",
+            Self::AsPublished => "as-published",
+        })
+    }
+}
