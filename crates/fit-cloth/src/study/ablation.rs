@@ -15,12 +15,10 @@ use cloth_fit::error::Result;
 use cloth_fit::frame::Kind;
 use cloth_fit::report::StageReport;
 use cloth_fit::rig::{KnownFabric, Rig};
-use cloth_fit::simulation::Meter;
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
 use cloth_sim::equilibrium::{self, Method};
 use cloth_sim::material::Component;
 use nalgebra::Vector3;
-use std::sync::Arc;
 
 /// Scenes are balanced so often, and the fastest counts.
 const REPEATS: usize = 3;
@@ -74,7 +72,6 @@ struct Pair {
 /// A scene that the rig cannot make.
 pub(super) fn scenes(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Ablated>> {
     let reference = Reference { model: fabric.model, curves: fabric.curves()? };
-    let meter = progress.meter();
     let nodes = extent.usual_nodes;
     let rig = || Rig { nodes: [extent.rig_nodes; 2], measured: [25, 25], frames: 6, ..Rig::default() };
     let strip = Scene::new(fabric, Kind::StretchWeft, rig(), stretch::plan(&[Component::StretchWeft]))?;
@@ -84,7 +81,7 @@ pub(super) fn scenes(fabric: &KnownFabric, extent: &Extent, progress: &Progress)
     pairs
         .map(|pair| {
             progress.note(&format!("{}, {}", pair.part, pair.with.0.name));
-            pair.balance(&reference, nodes, &meter)
+            pair.balance(&reference, nodes)
         })
         .collect()
 }
@@ -150,11 +147,11 @@ fn solved(part: &'static str, scene: &Scene, without: equilibrium::Settings) -> 
 }
 
 impl Pair {
-    fn balance(&self, reference: &Reference, nodes: usize, meter: &Arc<Meter>) -> Result<Ablated> {
+    fn balance(&self, reference: &Reference, nodes: usize) -> Result<Ablated> {
         let [with, without] = [&self.with, &self.without].map(|(scene, equilibrium)| {
             let settings =
                 Settings { nodes: Some([nodes; 2]), equilibrium: *equilibrium, ..Settings::default() };
-            fastest(|| scene.balance(reference, &settings, meter))
+            fastest(|| scene.balance(reference, &settings))
         });
         let (with, without) = (with?, without?);
         Ok(Ablated {

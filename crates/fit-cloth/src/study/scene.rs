@@ -1,17 +1,19 @@
 //! A scene: one test of a known fabric, simulated as a fit simulates it, with or without some of its parts.
 
 use super::physical::Reference;
-use super::run::{Ending, Spent, spend};
+use super::run::{Ending, Spent};
+use super::memory;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::replica::Replica;
+use cloth_fit::replica::{Replica, ReplicaFrame};
 use cloth_fit::rig::{KnownFabric, Rig};
-use cloth_fit::simulation::{Meter, Objective, Settled, Simulation, Task};
+use cloth_fit::simulation::Counters;
 use cloth_fit::stage::{Plan, Settings};
-use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::equilibrium::{Equilibrium, Solver};
 use cloth_sim::mesh::Grid;
 use nalgebra::Vector3;
-use std::sync::Arc;
+use rayon::prelude::*;
+use std::time::Instant;
 
 /// Standard gravity across the sheet, m/s².
 pub(super) const WEIGHT: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
@@ -30,17 +32,23 @@ pub(super) struct Scene {
     pub(super) plan: Plan,
 }
 
-/// All frames of a scene in equilibrium.
+/// A scene's frames in equilibrium, each solved once from where it starts, without what a fit falls back on.
 pub(super) struct Balanced {
-    /// Index of each frame.
-    pub(super) frames: Vec<usize>,
-    /// Simulated forces along the measured components, frame by frame, N.
-    pub(super) forces: Vec<Vec<f64>>,
-    /// Places of the nodes, frame by frame, 3 stacked coordinates a node, m.
-    pub(super) shapes: Vec<Vec<f64>>,
-    pub(super) grid: Grid,
+    /// The frames that have an equilibrium.
+    pub(super) frames: Vec<BalancedFrame>,
+    pub(super) replica: Replica,
     pub(super) spent: Spent,
     pub(super) ending: Ending,
+}
+
+/// One frame in equilibrium.
+pub(super) struct BalancedFrame {
+    /// Its place among the replica's frames.
+    pub(super) place: usize,
+    /// Simulated forces along the measured components, N.
+    pub(super) forces: Vec<f64>,
+    /// Places of the nodes, 3 stacked coordinates a node, m.
+    pub(super) x: Vec<f64>,
 }
 
 impl Scene {
@@ -76,65 +84,36 @@ impl Scene {
         self
     }
 
-    /// Its replicas.
-    fn replicas(&self, reference: &Reference, settings: &Settings) -> Result<Vec<Replica>> {
-        let mut plan = self.plan.clone();
-        plan.components.retain(|&component| reference.curves.get(component).is_some());
-        plan.replicas(&self.set, settings)
-    }
-
-    /// Brings all frames to equilibrium. Only the solving is timed, not what a fit does once for all of it.
+    /// Brings all frames to equilibrium. Only the solving is timed.
     ///
     /// # Errors
     /// A replica that cannot be made.
-    pub(super) fn balance(
-        &self,
-        reference: &Reference,
-        settings: &Settings,
-        meter: &Arc<Meter>,
-    ) -> Result<Balanced> {
-        self.read(reference, settings, meter, |_, _| ()).map(|(balanced, _)| balanced)
-    }
-
-    /// The same, and what is read off each frame with its forces.
-    ///
-    /// # Errors
-    /// As [`Scene::balance`].
-    pub(super) fn read<T>(
-        &self,
-        reference: &Reference,
-        settings: &Settings,
-        meter: &Arc<Meter>,
-        read: impl Fn(Settled<'_>, &[f64]) -> T,
-    ) -> Result<(Balanced, Vec<T>)> {
-        let replicas = self.replicas(reference, settings)?;
-        let [replica] = &replicas[..] else { return Err(self.failed("no sequence, or several".into())) };
+    pub(super) fn balance(&self, reference: &Reference, settings: &Settings) -> Result<Balanced> {
+        let mut plan = self.plan.clone();
+        plan.components.retain(|&component| reference.curves.get(component).is_some());
+        let mut replicas = plan.replicas(&self.set, settings)?;
+        let Some(replica) = replicas.pop() else { return Err(self.failed("no sequence".into())) };
         let mechanics = |source| Error::Mechanics { context: self.name.clone(), source };
-        let task = Task {
-            fitted: Vec::new(),
-            objective: Objective::Forces,
-            known: reference.told_in(settings.model, &replica.specimen.mesh).map_err(mechanics)?,
-            settings: settings.equilibrium,
-            robust: None,
+        let curves = reference.told_in(settings.model, &replica.specimen.mesh).map_err(mechanics)?;
+        let starts = replica.frames.iter().map(|frame| (Solver::new(replica.cloth(frame)), start(&replica, frame)));
+        let starts: Vec<_> = starts.collect();
+        memory::reset_peak();
+        let clock = Instant::now();
+        let solve = |(mut solver, mut x): (Solver<'_>, Vec<f64>)| {
+            let found = solver.solve(&curves, &mut x, &settings.equilibrium);
+            (found, solver.clip_forces(), x)
         };
-        let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
-        let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(meter));
-        let (forces, spent) = spend(meter, || simulation.settle());
-        let ending = match simulation.dropped().first() {
-            Some(dropped) => Ending::Failed(dropped.status.to_string()),
-            None if simulation.settled().any(|settled| settled.multi_stable) => Ending::SeveralEquilibria,
-            None => Ending::Converged,
-        };
-        let found = simulation.settled().zip(&forces).map(|(settled, forces)| read(settled, forces)).collect();
-        let balanced = Balanced {
-            frames: simulation.settled().map(|settled| settled.frame.index).collect(),
-            shapes: simulation.settled().map(|settled| settled.x.to_vec()).collect(),
-            grid: replica.specimen.grid,
-            forces,
-            spent,
-            ending,
-        };
-        Ok((balanced, found))
+        let solved: Vec<_> = starts.into_par_iter().map(solve).collect();
+        let seconds = clock.elapsed().as_secs_f64();
+        let found: Vec<Equilibrium> = solved.iter().map(|(found, ..)| *found).collect();
+        let spent = Spent { seconds, counters: counted(&found), peak_memory_mib: memory::peak_mib() };
+        let kept = solved.into_iter().enumerate().filter(|(_, (found, ..))| found.converged());
+        let frames = kept.map(|(place, (_, clips, x))| BalancedFrame {
+            place,
+            forces: replica.frames[place].forces.iter().map(|component| component.of(&clips)).collect(),
+            x,
+        });
+        Ok(Balanced { frames: frames.collect(), ending: ending(&found), spent, replica })
     }
 
     fn failed(&self, found: String) -> Error {
@@ -142,27 +121,68 @@ impl Scene {
     }
 }
 
+/// At the measured shape where that has left its plane, else as the replica says.
+fn start(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
+    let mut x = frame.start.clone();
+    if let Some(observed) = frame.observed.as_ref().filter(|_| replica.is_buckled(frame)) {
+        for &(coordinate, _) in replica.cloth(frame).free_coordinates() {
+            x[coordinate] = observed[coordinate];
+        }
+    }
+    x
+}
+
+fn counted(found: &[Equilibrium]) -> Counters {
+    Counters {
+        equilibria: found.len(),
+        iterations: found.iter().map(|found| found.iterations).sum(),
+        factorisations: found.iter().map(|found| found.factorisations).sum(),
+    }
+}
+
+fn ending(found: &[Equilibrium]) -> Ending {
+    match found.iter().find(|found| !found.converged()) {
+        Some(failed) => Ending::Failed(failed.status.to_string()),
+        None if found.iter().any(|found| found.escaped) => Ending::SeveralEquilibria,
+        None => Ending::Converged,
+    }
+}
+
 impl Balanced {
     /// Places of the nodes that a coarser square grid has too, all frames after one another, m.
     pub(super) fn shared(&self, nodes: usize) -> Vec<f64> {
-        let [right, up] = [self.grid.columns, self.grid.rows].map(|all| (all - 1) / (nodes - 1));
+        let grid: &Grid = &self.replica.specimen.grid;
+        let [right, up] = [grid.columns, grid.rows].map(|all| (all - 1) / (nodes - 1));
         let mut places = Vec::new();
-        for shape in &self.shapes {
+        for frame in &self.frames {
             for (row, column) in (0..nodes * nodes).map(|node| (node / nodes, node % nodes)) {
-                let node = self.grid.node(column * right, row * up);
-                places.extend(&shape[3 * node..3 * node + 3]);
+                let node = grid.node(column * right, row * up);
+                places.extend(&frame.x[3 * node..3 * node + 3]);
             }
         }
         places
+    }
+
+    /// Index of a frame in its sequence.
+    pub(super) fn index(&self, frame: &BalancedFrame) -> usize {
+        self.replica.frames[frame.place].index
+    }
+
+    /// The forces but those across the plane.
+    fn in_plane<'f>(&'f self, frame: &'f BalancedFrame) -> impl Iterator<Item = f64> + 'f {
+        let components = self.replica.frames[frame.place].forces.iter();
+        let inside = components.zip(&frame.forces).filter(|(component, _)| component.direction.z.abs() < 0.5);
+        inside.map(|(_, force)| *force)
     }
 
     /// Largest difference of a force over the largest force of the other, over the frames that both have; `None` without
     /// forces.
     pub(super) fn force_error(&self, other: &Self) -> Option<f64> {
         let (mut apart, mut largest) = (0.0f64, 0.0f64);
-        for (frame, forces) in other.frames.iter().zip(&other.forces) {
-            let Some(own) = self.frames.iter().position(|own| own == frame) else { continue };
-            for (a, b) in self.forces[own].iter().zip(forces) {
+        for frame in &other.frames {
+            let own = self.frames.iter().find(|own| self.index(own) == other.index(frame));
+            // In the plane a clip's force across it is not measured: the first components are the same.
+            for (a, b) in own.iter().flat_map(|own| self.in_plane(own).zip(other.in_plane(frame))) {
                 apart = apart.max((a - b).abs());
                 largest = largest.max(b.abs());
             }
@@ -172,7 +192,10 @@ impl Balanced {
 
     /// Root mean square distance of the nodes of a coarser grid, mm; `None` where the frames differ.
     pub(super) fn position_error_mm(&self, other: &Self, nodes: usize) -> Option<f64> {
-        let same = self.frames == other.frames && !self.frames.is_empty();
+        let indices = |balanced: &Self| -> Vec<usize> {
+            balanced.frames.iter().map(|frame| balanced.index(frame)).collect()
+        };
+        let same = indices(self) == indices(other) && !self.frames.is_empty();
         same.then(|| 1e3 * root_mean_square_distance(&self.shared(nodes), &other.shared(nodes)))
     }
 }
