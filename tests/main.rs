@@ -6,6 +6,7 @@ mod bending;
 mod closed_form;
 mod coverage;
 mod outliers;
+mod published;
 mod recovery;
 mod rig;
 mod shear;

@@ -7,7 +7,7 @@
 
 use cloth_fit::frame::{Cord, Kind, MeasurementSet, Noise, Sequence};
 use cloth_fit::replica::Replica;
-use cloth_fit::simulation::{Objective, Settled, Simulation, Task};
+use cloth_fit::simulation::{Objective, Settled, Simulation, SolveStart, Task};
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
@@ -49,6 +49,7 @@ pub fn equilibria<T>(
         objective: Objective::Forces,
         known: curves.clone(),
         settings: settings.equilibrium,
+        start: SolveStart::LastEquilibrium,
         robust: None,
     };
     let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).expect("a curve");

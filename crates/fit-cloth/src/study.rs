@@ -71,6 +71,6 @@ pub fn run(subject: &Subject, extent: &Extent, progress: &Progress) -> Result<St
     runs.extend(fits.iter().flat_map(|fit| fit.rows.iter().cloned()));
     runs.extend(noise::runs(&subject.fabric, extent, progress)?);
     let mut ablation = ablation::scenes(&subject.fabric, extent, progress)?;
-    ablation.extend(ablation::of_fits(subject, &fits, extent, progress));
+    ablation.extend(ablation::of_fits(subject, &reference, &fits, extent, progress));
     Ok(Study { fabric: subject.set.fabric.name.clone(), reference: told, runs, ablation })
 }

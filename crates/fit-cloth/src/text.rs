@@ -12,7 +12,7 @@ pub use comparison::comparison;
 pub use residuals::residuals;
 pub use stage::stage;
 pub use study::{study, study_page};
-pub use summary::{missing, summary};
+pub use summary::{as_published, missing, summary};
 pub use validation::validation;
 pub use verdict::verdict;
 

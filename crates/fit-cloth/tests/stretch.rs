@@ -113,6 +113,45 @@ fn the_bytes_are_the_same_on_one_and_on_two_threads() {
 }
 
 #[test]
+fn a_fit_as_published_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let output = fit(&fixture(), &out, &["--as-published"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    assert!(stdout.starts_with("stvk, fitted as published (Miguel et al. 2012)\n"), "{stdout}");
+    let provenance = |out: &Path| -> serde_json::Value {
+        let text = fs::read_to_string(out.join("material.json")).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["provenance"].clone()
+    };
+    assert_eq!(provenance(&out)["as_published"], true);
+    assert_eq!(provenance(&out)["constraints"], "control-points");
+    // Ours ends elsewhere, though not far off, and says nothing.
+    let ours = folder.path().join("ours");
+    assert!(fit(&fixture(), &ours, &[]).status.success());
+    assert!(provenance(&ours).get("as_published").is_none());
+    let last_stress = |out: &Path| -> f64 {
+        let text = fs::read_to_string(out.join("curves/stretch-weft.csv")).unwrap();
+        text.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap()
+    };
+    let [published, own] = [&out, &ours].map(|out| last_stress(out));
+    assert!(published != own && (published / own - 1.0).abs() < 0.02, "{published} {own}");
+}
+
+#[test]
+fn what_the_published_method_sets_cannot_be_chosen_beside_it() {
+    for other in ["--robust", "--constraints=stable"] {
+        let output = run(&["stretch", "set", "--as-published", other]);
+        assert_eq!(output.status.code(), Some(2), "{other}");
+        assert!(String::from_utf8(output.stderr).unwrap().contains("cannot be used with"), "{other}");
+    }
+    for command in ["stretch", "shear", "bend", "fit"] {
+        let help = String::from_utf8(run(&[command, "--help"]).stdout).unwrap();
+        assert!(help.contains("--as-published"), "{command}: {help}");
+    }
+}
+
+#[test]
 fn json_holds_the_material() {
     let folder = tempfile::tempdir().unwrap();
     let output = fit(&fixture(), &folder.path().join("out"), &["--json"]);

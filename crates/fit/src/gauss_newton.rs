@@ -7,8 +7,10 @@
 //!
 //! A step is kept by its gain ratio, (F(k) − F(k+p)) over what the linear model promised, and the same ratio widens
 //! or narrows Δ. Near the solution steps are not cut and the method is plain Gauss–Newton. How a step is found:
-//! `region.rs`. Source: Moré, The Levenberg-Marquardt algorithm (1978).
+//! `region.rs`. Source: Moré, The Levenberg-Marquardt algorithm (1978). By choice the whole step is halved instead,
+//! until it is no worse: `line_search.rs`.
 
+mod line_search;
 mod outcome;
 mod region;
 
@@ -70,14 +72,30 @@ impl Domain {
     }
 }
 
+/// What is done about steps of the linear model that lead too far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Globalisation {
+    /// Steps are kept within a region in which the linear model has proved itself.
+    #[default]
+    TrustRegion,
+    /// The whole step, halved until the sum of squares does not grow. The first that lowers it by no more than the
+    /// tolerance is the last.
+    ///
+    /// Source: Miguel et al. 2012, §5.1; differs in that the inequalities are met by the step itself.
+    LineSearch,
+}
+
 /// When to stop and how to start. The defaults converge fully; a published protocol that stops below 1 % sets
 /// `gain_tolerance: 0.01`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
+    /// What is done about steps that lead too far. Default a trust region.
+    pub globalisation: Globalisation,
     /// Steps tried at most, rejected ones included. Default 500.
     pub max_iterations: usize,
     /// Stops when a step that the region did not cut lowers the sum of squares by a smaller share, and the linear
-    /// model promised no more: a step that falls short of its promise is no sign of a minimum. Default 1e-13.
+    /// model promised no more: a step that falls short of its promise is no sign of a minimum. A line search asks for
+    /// no promise. Default 1e-13.
     pub gain_tolerance: f64,
     /// Stops when the step is a smaller share of the point, both as ‖D ·‖. Default 1e-11.
     pub step_tolerance: f64,
@@ -93,6 +111,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            globalisation: Globalisation::TrustRegion,
             max_iterations: 500,
             gain_tolerance: 1e-13,
             step_tolerance: 1e-11,
@@ -128,11 +147,25 @@ pub fn minimise<P: Residuals>(
         Ok(start) => start,
         Err(status) => return Ok(Outcome::unevaluated(start.clone(), Status::StepFailed { status })),
     };
-    let mut state = match values(problem.evaluate(&start, true)?) {
+    let state = match values(problem.evaluate(&start, true)?) {
         Ok((residual, Some(jacobian))) => State::new(start, residual, jacobian),
         Ok((_, None)) => panic!("the Jacobian was asked for"),
         Err(reason) => return Ok(Outcome::unevaluated(start, Status::StartFailed { reason })),
     };
+    match options.globalisation {
+        Globalisation::TrustRegion => within_region(problem, state, domain, options, observe),
+        Globalisation::LineSearch => line_search::descend(problem, state, domain, options, observe),
+    }
+}
+
+/// Steps within a trust region, until one of the tolerances is met.
+fn within_region<P: Residuals>(
+    problem: &mut P,
+    mut state: State,
+    domain: &Domain,
+    options: &Options,
+    observe: &mut dyn FnMut(&Iteration),
+) -> Result<Outcome, P::Error> {
     let mut scale = Scale::new(&state.jacobian);
     let mut radius = options.initial_radius * scale.norm_or_one(&state.point);
     let mut bend: Option<Bend> = None;
@@ -184,16 +217,10 @@ pub fn minimise<P: Residuals>(
         };
         match trial {
             Ok((residual, jacobian)) if accepted => {
-                let jacobian = match jacobian {
-                    Some(jacobian) => Ok(jacobian),
-                    None => values(problem.evaluate(&point, true)?).map(|(_, jacobian)| {
-                        jacobian.unwrap_or_else(|| panic!("the Jacobian was asked for"))
-                    }),
+                let next = match accepted_state(problem, point, residual, jacobian)? {
+                    Ok(next) => next,
+                    Err(reason) => break Status::Stalled { reason: Some(reason) },
                 };
-                let Ok(jacobian) = jacobian else {
-                    break Status::Stalled { reason: jacobian.err() };
-                };
-                let next = State::new(point, residual, jacobian);
                 bend = Some(Bend::between(&state, &next));
                 state = next;
                 scale.widen(&state.jacobian);
@@ -212,9 +239,22 @@ pub fn minimise<P: Residuals>(
             break Status::SmallGain { tolerance: options.gain_tolerance };
         }
     };
-    let sum_of_squares = state.residual.norm_squared();
-    let State { point, residual, jacobian, .. } = state;
-    Ok(Outcome { point, residual, jacobian, sum_of_squares, status, iterations })
+    Ok(Outcome::at(state, status, iterations))
+}
+
+/// The state at a point that was accepted: with its Jacobian, which may not have been asked for yet; or why it has none.
+fn accepted_state<P: Residuals>(
+    problem: &mut P,
+    point: DVector<f64>,
+    residual: DVector<f64>,
+    jacobian: Option<DMatrix<f64>>,
+) -> Result<Result<State, String>, P::Error> {
+    let jacobian = match jacobian {
+        Some(jacobian) => Ok(jacobian),
+        None => values(problem.evaluate(&point, true)?)
+            .map(|(_, jacobian)| jacobian.unwrap_or_else(|| panic!("the Jacobian was asked for"))),
+    };
+    Ok(jacobian.map(|jacobian| State::new(point, residual, jacobian)))
 }
 
 /// The start itself, or the nearest point that meets the inequalities.

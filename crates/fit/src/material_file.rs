@@ -55,6 +55,9 @@ pub struct Provenance {
     pub program: String,
     /// What kept the curves physical.
     pub constraints: Constraints,
+    /// The published method fitted it, as [`Settings::as_published`] says; absent where ours did.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub as_published: bool,
     /// Residuals above so many times the noise counted less; absent where all counted in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robust: Option<f64>,
@@ -99,6 +102,7 @@ impl MaterialFile {
             provenance: Provenance {
                 program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")).into(),
                 constraints: settings.constraints,
+                as_published: settings.is_as_published(),
                 robust: settings.robust,
                 diagonals: Some(settings.diagonals),
                 nodes: nodes.collect(),

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
 use crate::replica::{Parts, Replica};
 use crate::report::SequenceReport;
-use crate::simulation::{Counters, DroppedFrame, Objective, Simulation, Task};
+use crate::simulation::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task};
 use crate::stage::{Settings, Watch, softest_bending};
 use crate::summary::sequence_reports;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
@@ -50,6 +50,7 @@ pub fn predict(
         objective: Objective::Forces,
         known: curves.clone(),
         settings: settings.equilibrium,
+        start: SolveStart::LastEquilibrium,
         robust: None,
     };
     let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
@@ -99,5 +100,6 @@ fn parts(kind: Kind, set: &MeasurementSet, curves: &Curves, settings: &Settings)
         areal_density: set.fabric.areal_density_kg_m2,
         nodes: settings.nodes,
         diagonals: settings.diagonals,
+        table: settings.table,
     }
 }

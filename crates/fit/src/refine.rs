@@ -3,7 +3,7 @@
 //! A number of points that does not pay is passed over once: what bends down and up again, as many knits do, is met by
 //! a line no better than by a constant, but by three or five points. Two in a row that do not pay are the end.
 //!
-//! Source: Miguel et al. 2012, §5.2; differs in the second try.
+//! Source: Miguel et al. 2012, §5.2; differs in the second try, unless [`GrowthRule`] says otherwise.
 
 use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::report::Level;
@@ -15,8 +15,52 @@ use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
 use std::time::Instant;
 
-/// So many numbers of points in a row that do not pay are the end.
-const TRIES: usize = 2;
+/// When more control points pay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GrowthRule {
+    /// They must lower the residual by this share; default 1 %, as published, but of another [`Measure`].
+    pub gain: f64,
+    /// What must fall; default the root mean square; published its square.
+    pub measure: Measure,
+    /// Where the noise is known, a gain that chance does not explain pays however small its share is; default true;
+    /// published false.
+    pub significance: bool,
+    /// So many numbers of points in a row that do not pay are the end; default 2; published 1.
+    pub tries: usize,
+}
+
+/// How the size of residuals is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// In newtons or metres.
+    RootMeanSquare,
+    /// The function that is minimised.
+    SumOfSquares,
+}
+
+impl Default for GrowthRule {
+    fn default() -> Self {
+        Self { gain: 0.01, measure: Measure::RootMeanSquare, significance: true, tries: 2 }
+    }
+}
+
+impl GrowthRule {
+    /// Until the sum of squares falls by less than 1 %. Source: Miguel et al. 2012, §5.2.
+    pub const PUBLISHED: Self =
+        Self { gain: 0.01, measure: Measure::SumOfSquares, significance: false, tries: 1 };
+
+    /// True if a fall of the root mean square pays.
+    ///
+    /// * `weight` — by which its square is ‖r/σ‖², where the noise is known
+    fn pays(&self, before: f64, after: f64, weight: Option<f64>) -> bool {
+        let left = match self.measure {
+            Measure::RootMeanSquare => 1.0 - self.gain,
+            Measure::SumOfSquares => (1.0 - self.gain).sqrt(),
+        };
+        let gained = weight.map_or(0.0, |weight| weight * (before * before - after * after));
+        after < left * before || self.significance && gained > SIGNIFICANT
+    }
+}
 
 /// A level's residuals are whitened anew at its minimum until that moves by less than this share, or so often.
 const SETTLED: f64 = 1e-5;
@@ -68,12 +112,8 @@ pub fn grow(
     let unit = simulation.unit();
     let mut levels = Vec::new();
     let mut kept: Option<(StiffnessCurve, Outcome, Domain, f64)> = None;
-    let noise = simulation.noise_is_known().then_some(unit);
-    let pays = |before: f64, after: f64| {
-        let gained =
-            noise.map_or(0.0, |noise| measurements * (before * before - after * after) / (noise * noise));
-        after < (1.0 - settings.growth_gain) * before || gained > SIGNIFICANT
-    };
+    let weight = simulation.noise_is_known().then_some(measurements / (unit * unit));
+    let rule = settings.growth;
     let mut curve = simulation.curve().clone();
     let mut tries = 0;
     loop {
@@ -90,7 +130,7 @@ pub fn grow(
         let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
         let all = points >= most;
         let best = match kept {
-            Some(best) if !told_apart || !pays(best.3, rms) => {
+            Some(best) if !told_apart || !rule.pays(best.3, rms, weight) => {
                 tries += 1;
                 best
             }
@@ -99,7 +139,7 @@ pub fn grow(
                 (curve.clone(), outcome, domain, rms)
             }
         };
-        if all || tries == TRIES {
+        if all || tries == rule.tries {
             let stopped = match tries {
                 0 if settings.variant.is_linear() => {
                     "one stiffness is all that a linear variant has".to_string()
@@ -110,7 +150,7 @@ pub fn grow(
                 0 => format!("all {points} control points are in use"),
                 _ => format!(
                     "{points} control points lower the residual by less than {:.0} %",
-                    100.0 * settings.growth_gain
+                    100.0 * rule.gain
                 ),
             };
             let (curve, outcome, domain, _) = best;

@@ -20,6 +20,8 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use table::{Lines, Overhang};
 
+pub use table::TableHold;
+
 /// Largest strain that flattening the clips' motion into the plane may change before the replica moves in space.
 const FLATTENING_STRAIN: f64 = 1e-5;
 
@@ -39,6 +41,8 @@ pub struct Parts {
     pub nodes: Option<[usize; 2]>,
     /// How cells are split.
     pub diagonals: Diagonals,
+    /// What a table holds, and how the rest may move.
+    pub table: TableHold,
     /// All motion stays in the plane, and weight across it is left out: for parts without bending, which in space would
     /// crumple where they are pressed together.
     pub flat: bool,
@@ -75,7 +79,7 @@ pub struct Replica {
     /// Per node: noise of its coordinates as a share of a vertex's, since a node between vertices sees their mean.
     pub spread: Vec<f64>,
     /// Noise of the place of a held line off a table, as a share of a vertex's: the line is the mean of many. 0 between
-    /// clips.
+    /// clips, and where it is not to count.
     pub held_spread: f64,
 }
 
@@ -92,7 +96,7 @@ pub struct ReplicaFrame {
     /// bars shear; the length that hangs over a table's edge, m.
     pub extension: f64,
     /// A state to start from, 3 stacked coordinates a node, m: what is held in place, the rest blended between clips, or
-    /// where it was seen, smoothed, off a table.
+    /// where it was seen off a table, smoothed if it bends as a cylinder.
     pub start: Vec<f64>,
     /// Where the nodes were seen, 3 stacked coordinates a node, m; `None` = no shape measured, NaN = this node not.
     pub observed: Option<Vec<f64>>,
@@ -304,7 +308,7 @@ impl Replica {
         gravity: Vector3<f64>,
         shapes: Vec<Option<Vec<f64>>>,
     ) -> Result<()> {
-        let lines = Lines::new(sequence, &self.specimen, &shapes)?;
+        let lines = Lines::new(sequence, &self.specimen, &shapes, parts.table)?;
         let overhangs: Vec<Option<Overhang>> = shapes
             .iter()
             .map(|shape| shape.as_ref().and_then(|shape| lines.overhang(&self.specimen, shape)))
@@ -315,22 +319,24 @@ impl Replica {
         for (index, ((frame, overhang), observed)) in
             sequence.frames.iter().zip(overhangs).zip(shapes).enumerate()
         {
-            let Some(Overhang { held, length, smooth }) = overhang else { continue };
+            let Some(Overhang { held, length, start }) = overhang else { continue };
             let cloth = match cloth_of.get(&held) {
                 Some(&known) => known,
                 None => {
                     let nodes: Vec<Held> = lines.held(held).collect();
-                    let tied = lines.beyond(held);
+                    let tied = lines.tied(held);
                     self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, tied, false)?);
                     cloth_of.insert(held, self.cloths.len() - 1);
                     self.cloths.len() - 1
                 }
             };
             let phase = frame.phase.unwrap_or_else(|| phase_of(&lengths, index));
-            let (extension, start, forces) = (length, smooth, Vec::new());
+            let (extension, forces) = (length, Vec::new());
             self.frames.push(ReplicaFrame { index, cloth, phase, extension, start, observed, forces });
         }
-        self.held_spread = lines.spread(&self.spread);
+        if parts.table.whitened {
+            self.held_spread = lines.spread(&self.spread);
+        }
         self.lines = Some(lines);
         Ok(())
     }
@@ -433,6 +439,7 @@ mod tests {
                 areal_density: 0.2,
                 nodes: Some(nodes),
                 diagonals: Diagonals::Forward,
+                table: TableHold::default(),
                 flat: false,
             };
             Replica::new(&sequence, &parts).unwrap_err().to_string()

@@ -10,7 +10,8 @@
 //! K is the true stiffness matrix at the equilibrium, whose factorisation the equilibrium leaves behind; all control
 //! points are solved for at once. Frames are independent: they run in parallel and are collected in order.
 //!
-//! Source: Miguel et al. 2012, eqs. 7–9; without the μI that they keep in K (docs/model.md).
+//! Source: Miguel et al. 2012, eqs. 7–9; without the μI that they keep in K, unless equilibria are sought by
+//! Levenberg–Marquardt, too (docs/model.md).
 
 mod equilibria;
 mod meter;
@@ -61,6 +62,19 @@ pub struct Settled<'s> {
     pub multi_stable: bool,
 }
 
+/// Where the equilibria of the outer loop start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SolveStart {
+    /// At the frame's last equilibrium, moved ahead by the sensitivities; where that fails, at the replica's own start, and
+    /// then by load steps.
+    #[default]
+    LastEquilibrium,
+    /// At the measured shape of the frame, every time; where none was measured, at the replica's own start. No second try.
+    ///
+    /// Source: Miguel et al. 2012, §5.1.
+    Measured,
+}
+
 /// What is simulated, and how.
 #[derive(Debug, Clone)]
 pub struct Task {
@@ -72,6 +86,8 @@ pub struct Task {
     pub known: Curves,
     /// How equilibria are found.
     pub settings: Settings,
+    /// Where they start.
+    pub start: SolveStart,
     /// How far a residual counts in full.
     pub robust: Option<Robust>,
 }

@@ -15,12 +15,15 @@ mod start;
 pub mod stretch;
 
 pub use course::{Plan, fit};
+pub use start::FirstStiffness;
 pub(crate) use start::softest_bending;
 
 use crate::error::{Error, Result};
 use crate::frame::Kind;
-use crate::gauss_newton::{Iteration, Options};
-use crate::simulation::Meter;
+use crate::gauss_newton::{Globalisation, Iteration, Options};
+use crate::refine::GrowthRule;
+use crate::replica::TableHold;
+use crate::simulation::{Meter, SolveStart};
 use cloth_sim::equilibrium;
 use cloth_sim::material::{Component, Compression, Model};
 use cloth_sim::mesh::Diagonals;
@@ -117,18 +120,24 @@ pub struct Settings {
     pub constraints: Constraints,
     /// Compression; default with the stiffness at zero strain.
     pub compression: Compression,
-    /// How equilibria are found.
+    /// How equilibria are found. Published: Levenberg–Marquardt, whose matrix serves the sensitivities too, to 10 µN.
     pub equilibrium: equilibrium::Settings,
-    /// More control points must lower the root mean square residual by this share; default 1 %. (Published: 1 % of its
-    /// square.)
-    pub growth_gain: f64,
+    /// Where equilibria start; default at the frame's last one. Published: at the measured shape.
+    pub solve_start: SolveStart,
+    /// The stiffness that a stage starts from; default from the measurements. Published: not given.
+    pub first_stiffness: FirstStiffness,
+    /// What a table holds; default up to the second line past its edge. Published: what lies on it.
+    pub table: TableHold,
+    /// When more control points pay; default while they lower the root mean square residual by 1 %. Published: its square.
+    pub growth: GrowthRule,
     /// Residuals above so many times the noise (where it is not given: the typical residual) count less; default `None`: all
     /// count in full.
     pub robust: Option<f64>,
     /// Start every stage from this multiple of its own start value; default 1. For those who ask whether a fit depends on
     /// where it starts.
     pub start_factor: f64,
-    /// The outer loop.
+    /// The outer loop; default a trust region, and full convergence. Published: a line search, until a step gains less than
+    /// 1 %.
     pub outer: Options,
 }
 
@@ -143,7 +152,10 @@ impl Default for Settings {
             constraints: Constraints::Stable,
             compression: Compression::ZeroStrain,
             equilibrium: equilibrium::Settings::default(),
-            growth_gain: 0.01,
+            solve_start: SolveStart::LastEquilibrium,
+            first_stiffness: FirstStiffness::FromMeasurements,
+            table: TableHold::default(),
+            growth: GrowthRule::default(),
             robust: None,
             start_factor: 1.0,
             // A share of 1e-6 of the sum of squares, or of 1e-7 of the stiffnesses, is far below any noise.
@@ -163,10 +175,38 @@ impl Settings {
         if self.variant.is_linear() { 1 } else { self.points }
     }
 
+    /// The published method of fitting, for the same model, variant, grid and compression. Each of these settings can be
+    /// changed alone, too.
+    ///
+    /// Source: Miguel et al. 2012, §5.1 and §5.2; what they leave open: docs/model.md, "The method as published".
+    pub fn as_published(self) -> Self {
+        Self {
+            constraints: Constraints::ControlPoints,
+            equilibrium: equilibrium::Settings {
+                method: equilibrium::Method::LevenbergMarquardt,
+                tolerance: equilibrium::Tolerance::Absolute(1e-5),
+                escape: false,
+                ..self.equilibrium
+            },
+            solve_start: SolveStart::Measured,
+            first_stiffness: FirstStiffness::Constant,
+            table: TableHold::PUBLISHED,
+            growth: GrowthRule::PUBLISHED,
+            robust: None,
+            outer: Options { globalisation: Globalisation::LineSearch, gain_tolerance: 0.01, ..self.outer },
+            ..self
+        }
+    }
+
+    /// True if these are the settings of [`Settings::as_published`].
+    pub fn is_as_published(&self) -> bool {
+        *self == self.clone().as_published()
+    }
+
     /// Names the setting that cannot be.
     ///
     /// # Errors
-    /// No control point, or more than 50; fewer than 3 nodes a side or more than 1000.
+    /// No control point, or more than 50; no try at growth; fewer than 3 nodes a side or more than 1000.
     pub fn validate(&self) -> Result<()> {
         let setting = |field, found: String, expected: &str| {
             Err(Error::Setting { field, found, expected: expected.into() })
@@ -179,6 +219,9 @@ impl Settings {
         }
         if !(self.start_factor > 0.0 && self.start_factor.is_finite()) {
             return setting("start_factor", self.start_factor.to_string(), "a positive number");
+        }
+        if self.growth.tries == 0 {
+            return setting("growth.tries", "0".into(), "at least 1");
         }
         match self.nodes {
             Some(nodes) if nodes.iter().any(|side| !(3..=1000).contains(side)) => {

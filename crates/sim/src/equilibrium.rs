@@ -46,7 +46,10 @@ impl Default for Settings {
 pub enum Method {
     /// Mixed Newton, Levenberg–Marquardt if that comes to nothing.
     MixedNewton,
-    /// The full Hessian + μI throughout, as published.
+    /// The full Hessian + μI throughout, for the sensitivities too, as published. Stability is not checked: what is balanced
+    /// has converged.
+    ///
+    /// Source: Miguel et al. 2012, §5.1; how μ is chosen is ours.
     LevenbergMarquardt,
 }
 
@@ -62,7 +65,7 @@ pub enum Tolerance {
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// A stable equilibrium.
+    /// A stable equilibrium; with Levenberg–Marquardt, any equilibrium.
     Converged,
     /// Balanced, but the stiffness matrix is not positive definite: the cloth would leave this state at a touch.
     Unstable,
@@ -142,6 +145,9 @@ const ESCAPES: usize = 6;
 /// factorisations with 0.5, 3.7 with 0.25; picture frames 5.0 and 6.0.
 const CHORD_CONTRACTION: f64 = 0.5;
 
+/// The first μ of Levenberg–Marquardt, as a share of the matrix's mean diagonal.
+const FIRST_DAMPING: f64 = 1e-3;
+
 /// The memory that finding equilibria of one cloth needs. One a thread.
 pub struct Solver<'a> {
     cloth: &'a Cloth,
@@ -190,7 +196,7 @@ impl<'a> Solver<'a> {
     /// * `x` — 3 stacked coordinates a node, m; held nodes at their prescribed places, where they stay
     ///
     /// On return [`Solver::solve_linear`] works with the true stiffness matrix there (where that is not positive
-    /// definite: shifted until it is).
+    /// definite: shifted until it is); with Levenberg–Marquardt as the method, with that + μI, μ of the last step.
     ///
     /// # Panics
     /// If `x` has another length than the cloth has coordinates.
@@ -250,10 +256,14 @@ impl<'a> Solver<'a> {
         if status == Status::Stalled {
             status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
         }
-        if status != Status::NotFinite {
-            let stable = self.factorise_true_hessian(curves, x);
-            if status == Status::Converged && !stable {
-                status = Status::Unstable;
+        match settings.method {
+            _ if status == Status::NotFinite => (),
+            Method::LevenbergMarquardt => self.factorise_damped(curves, x),
+            Method::MixedNewton => {
+                let stable = self.factorise_true_hessian(curves, x);
+                if status == Status::Converged && !stable {
+                    status = Status::Unstable;
+                }
             }
         }
         let (imbalance, tolerance, limit) = self.balance(x, settings);
@@ -376,6 +386,14 @@ impl<'a> Solver<'a> {
         stable
     }
 
+    /// The true matrix + μI with the μ of the last step; ten times more, and so on, where it is not positive definite.
+    fn factorise_damped(&mut self, curves: &Curves, x: &[f64]) {
+        let last = self.shift;
+        self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+        let least = if last > 0.0 { last } else { FIRST_DAMPING * self.mean_diagonal() };
+        let _ = (0..16).any(|power| self.factorise(least * 10f64.powi(power)));
+    }
+
     /// Adds μ to the diagonal, ten times more each time, until the matrix is positive definite.
     fn factorise_shifted(&mut self) -> bool {
         let mean = self.mean_diagonal();
@@ -472,6 +490,8 @@ impl<'a> Solver<'a> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
+        // Before the first step there is no μ, whatever a former solve has left.
+        self.shift = 0.0;
         let mut shift = None;
         while *iterations < settings.max_iterations {
             if self.is_balanced(x, settings) {
@@ -479,7 +499,7 @@ impl<'a> Solver<'a> {
             }
             self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
             let mean = self.mean_diagonal();
-            let mut damping = shift.unwrap_or(1e-3 * mean);
+            let mut damping = shift.unwrap_or(FIRST_DAMPING * mean);
             let norm = self.cloth.norm(&self.gradient);
             *iterations += 1;
             loop {

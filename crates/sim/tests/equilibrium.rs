@@ -5,13 +5,15 @@
 //!      ╲   collapsed, sheared, unheld sheets    passes  as each test says; the numbers are those of the cases
 //! ```
 
+use cloth_sim::cloth::Cloth;
+use cloth_sim::element::Curvature;
 use cloth_sim::equilibrium::{Equilibrium, Method, Settings, Solver, Status, Tolerance};
 use cloth_sim::error::Error;
-use cloth_sim::material::{Component, Model};
+use cloth_sim::material::{Component, Curves, Model};
 use cloth_sim::membrane::Membrane;
 use cloth_sim::mesh::{Diagonals, Mesh};
 use cloth_sim::samples::{self, SIDE, Sample};
-use nalgebra::{Matrix3x2, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3x2, Vector3};
 
 fn solve(sample: &Sample, settings: &Settings) -> (Equilibrium, Vec<f64>) {
     let cloth = sample.cloth().expect("the sample is valid");
@@ -220,6 +222,58 @@ fn both_methods_find_the_same_equilibrium() {
             assert!(difference(&x, &y) < 1e-7 * SIDE, "{model}: {:e}", difference(&x, &y));
             println!("{model}: {} and {} factorisations", first.factorisations, second.factorisations);
         }
+    }
+}
+
+/// The dense stiffness matrix at a state.
+fn stiffness(cloth: &Cloth, curves: &Curves, x: &[f64]) -> DMatrix<f64> {
+    let mut values = Vec::new();
+    cloth.hessian(curves, x, Curvature::Full, &mut values);
+    let unknowns = cloth.unknowns();
+    DMatrix::from_fn(unknowns, unknowns, |i, j| cloth.entry(i, j).map_or(0.0, |place| values[place]))
+}
+
+/// What a dense solve gives: with K after mixed Newton, with K + μI after Levenberg–Marquardt. μ starts at 1e-3 of the mean
+/// diagonal; these steps all succeed, and each leaves a tenth for the next. The mean is that of the last step's matrix.
+#[test]
+fn the_published_method_keeps_the_damping_of_its_last_step() {
+    let sample = samples::hanging_sheet(Model::Stvk, 5).unwrap();
+    let cloth = sample.cloth().unwrap();
+    let curves = &sample.curves;
+    let newton = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
+    let published = Settings { method: Method::LevenbergMarquardt, ..newton };
+    let mut x = sample.start.clone();
+    let mut solver = Solver::new(&cloth);
+    let right: DVector<f64> = DVector::from_fn(cloth.unknowns(), |i, _| (i as f64).sin());
+    // From the start, and from the equilibrium, where no step is taken and the first μ stands.
+    for (settings, steps) in [(published, 1..200), (published, 0..1), (newton, 0..1)] {
+        let found = solver.solve(curves, &mut x, &settings);
+        assert!(found.converged() && steps.contains(&found.iterations), "{found:?}");
+        let matrix = stiffness(&cloth, curves, &x);
+        let mut solution = right.clone();
+        solver.solve_linear(solution.as_mut_slice());
+        let damped = (&right - &matrix * &solution).component_div(&solution);
+        let mean = matrix.diagonal().abs().mean();
+        let steps = found.iterations.max(1) as i32;
+        let expected =
+            if settings.method == Method::MixedNewton { 0.0 } else { 1e-3 * 0.1f64.powi(steps - 1) };
+        println!("{steps} steps: μ = {:e} of the mean diagonal, expected {expected:e}", damped.mean() / mean);
+        let exact = (matrix + DMatrix::identity(right.len(), right.len()) * (expected * mean)).lu();
+        let exact = exact.solve(&right).unwrap();
+        assert!((&solution - &exact).amax() < 1e-3 * exact.amax(), "{steps}");
+        if settings.method == Method::LevenbergMarquardt && steps == 1 {
+            let true_answer = stiffness(&cloth, curves, &x).lu().solve(&right).unwrap();
+            assert!((&solution - &true_answer).amax() > 0.1 * true_answer.amax());
+        }
+    }
+}
+
+#[test]
+fn the_published_method_does_not_ask_for_stability() {
+    let published = Settings { method: Method::LevenbergMarquardt, ..Settings::default() };
+    for model in [Model::Stvk, Model::SoftConstraint] {
+        let (flat, _) = solve(&compressed(model), &published);
+        assert_eq!((flat.status, flat.iterations, flat.escaped), (Status::Converged, 0, false), "{model}");
     }
 }
 

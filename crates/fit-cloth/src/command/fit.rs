@@ -65,7 +65,7 @@ pub fn run(
         writeln!(output, "{}", json(&results, &failures))?;
     } else if !telling.quiet {
         for fitted in &results {
-            tell_model(goal, &set, &fitted.report, telling, output)?;
+            tell_model(goal, &set, fitted, telling, output)?;
         }
         writeln!(output, "Written to {}", folder.display())?;
     }
@@ -167,10 +167,13 @@ fn json(results: &[Fitted], failures: &[(Model, Failure)]) -> Value {
 fn tell_model(
     goal: Goal,
     set: &MeasurementSet,
-    report: &FitReport,
+    Fitted { report, material }: &Fitted,
     telling: Telling,
     output: &mut impl Write,
 ) -> Result<(), Failure> {
+    if material.provenance.as_published {
+        writeln!(output, "{}\n", text::as_published(report))?;
+    }
     let told: Vec<_> = match telling.verbose {
         true => report.stages.iter().collect(),
         false => report.last_stages().collect(),

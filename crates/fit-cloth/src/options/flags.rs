@@ -60,6 +60,10 @@ pub struct FitFlags {
     /// Nonlinear or constant stiffness; weft and warp apart or alike
     #[arg(long, value_enum, default_value_t = VariantChoice::Orthotropic)]
     pub variant: VariantChoice,
+    /// Fit by the method of Miguel et al. 2012 as it was published, to check us against it: slower, and bending comes out
+    /// too stiff
+    #[arg(long, conflicts_with_all = ["constraints", "robust"])]
+    pub as_published: bool,
     /// A material.json whose curves are taken as exact: what it has is not fitted, but for what the command is about
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
@@ -116,7 +120,8 @@ impl CurveFlags {
 impl FitFlags {
     /// The settings of one model's fit.
     pub fn settings(&self, model: Model) -> Settings {
-        Settings { model, variant: self.variant.into(), ..self.how.settings(&self.on) }
+        let settings = Settings { model, variant: self.variant.into(), ..self.how.settings(&self.on) };
+        if self.as_published { settings.as_published() } else { settings }
     }
 }
 

@@ -49,7 +49,9 @@ pub(super) fn log_figure(
     axes: Axes<'_>,
     series: impl FnOnce(&mut LogChart<'_, '_>) -> Drawn<()>,
 ) -> Drawn<String> {
+    // Of every decade 1, 2 and 5.
     let power = |value: &f64| match value.abs() {
+        size if !['1', '2', '5'].contains(&format!("{size:e}").chars().next().unwrap_or(' ')) => String::new(),
         size if (1e-3..1e4).contains(&size) => format!("{value}"),
         _ => format!("{value:e}"),
     };

@@ -66,8 +66,9 @@ fn suits(scene: &Scene, model: Model) -> bool {
 }
 
 fn settings(model: Model, solver: Solver, nodes: usize, tolerance: Option<Tolerance>) -> Settings {
-    let mut settings =
-        solver.settings(Settings { model, nodes: Some([nodes; 2]), ..Settings::default() });
+    // The scene is the same for both: only how its equilibrium is found differs.
+    let equilibrium = solver.equilibrium();
+    let mut settings = Settings { model, nodes: Some([nodes; 2]), equilibrium, ..Settings::default() };
     settings.equilibrium.max_iterations = ITERATIONS;
     settings.equilibrium.tolerance = tolerance.unwrap_or(settings.equilibrium.tolerance);
     settings

@@ -34,7 +34,7 @@ impl Trial {
         Self { model: Model::Stvk, solver: Solver::Default, nodes, points: POINTS, every: 1 }
     }
 
-    fn settings(&self) -> Settings {
+    pub(super) fn settings(&self) -> Settings {
         let settings = Settings {
             model: self.model,
             nodes: Some([self.nodes; 2]),
@@ -92,17 +92,26 @@ pub(super) fn runs(
     let usual = Trial::usual(extent.usual_nodes);
     trials.extend(extent.points.iter().map(|&points| Trial { points, ..usual }));
     trials.extend(extent.every_frames.iter().map(|&every| Trial { every, ..usual }));
-    trials.iter().map(|trial| fit(&subject.set, reference, *trial, progress)).collect()
+    trials.iter().map(|trial| fit(&subject.set, reference, *trial, &trial.settings(), progress)).collect()
 }
 
-fn fit(set: &MeasurementSet, reference: &Reference, trial: Trial, progress: &Progress) -> Fitted {
+/// One fit.
+///
+/// * `settings` — those of the trial, or some of them changed
+pub(super) fn fit(
+    set: &MeasurementSet,
+    reference: &Reference,
+    trial: Trial,
+    settings: &Settings,
+    progress: &Progress,
+) -> Fitted {
     let Trial { model, solver, nodes, points, every } = trial;
     progress.note(&format!("fit, {model}, {solver}: {nodes}x{nodes}, {points} points, 1 of {every} frames"));
     let set = thinned(set, every);
     let meter = progress.meter();
     let mut watch = Watch { meter: meter.clone(), observe: Box::new(|_| ()) };
     let (found, spent) = spend(&meter, || {
-        incremental::fit(&set, &Stage::ALL, &Knowledge::default(), &trial.settings(), &mut watch)
+        incremental::fit(&set, &Stage::ALL, &Knowledge::default(), settings, &mut watch)
     });
     let mut whole = Run::new(Part::Fit, "all", model, solver, nodes);
     whole.points = Some(points);

@@ -1,14 +1,14 @@
 //! How equilibria and fits are solved: as they are by default, or as published.
 
-use cloth_fit::stage::{Constraints, Settings};
-use cloth_sim::equilibrium::{self, Method, Tolerance};
+use cloth_fit::stage::Settings;
+use cloth_sim::equilibrium;
 
 /// The method of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
     /// The program's own settings.
     Default,
-    /// The published method: Levenberg–Marquardt, an absolute tolerance, control values that are not negative.
+    /// The published method: [`Settings::as_published`].
     AsPublished,
 }
 
@@ -25,21 +25,9 @@ impl Solver {
     pub fn settings(self, settings: Settings) -> Settings {
         match self {
             Self::Default => settings,
-            Self::AsPublished => as_published(settings),
+            Self::AsPublished => settings.as_published(),
         }
     }
-}
-
-fn as_published(mut settings: Settings) -> Settings {
-    settings.equilibrium = equilibrium::Settings {
-        method: Method::LevenbergMarquardt,
-        tolerance: Tolerance::Absolute(1e-5),
-        escape: false,
-        ..settings.equilibrium
-    };
-    settings.constraints = Constraints::ControlPoints;
-    settings.outer.gain_tolerance = 0.01;
-    settings
 }
 
 impl std::fmt::Display for Solver {

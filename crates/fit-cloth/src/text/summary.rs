@@ -43,6 +43,13 @@ fn band(sample: &Sample) -> String {
     }
 }
 
+/// That the published method was used, and what that does to bending.
+pub fn as_published(report: &FitReport) -> String {
+    let bends = report.stages.iter().any(|stage| stage.components[0].is_bending());
+    let bias = "; held only where it lies on the table, a sheet comes out a third or more too stiff";
+    format!("{}, fitted as published (Miguel et al. 2012){}", report.model, if bends { bias } else { "" })
+}
+
 /// Why a component has no curve; `None` if it has one.
 pub fn missing(report: &FitReport, component: Component) -> Option<String> {
     if report.knowledge.knows(component) {

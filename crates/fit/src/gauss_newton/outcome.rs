@@ -1,5 +1,6 @@
 //! What a nonlinear fit hands back: where it ended, why, and every step on the way.
 
+use super::region::State;
 use crate::least_squares::{Active, Status as StepStatus};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
@@ -18,7 +19,7 @@ pub struct Iteration {
     pub promised: f64,
     /// Length of the step as a share of the point, both as ‖D ·‖.
     pub step: f64,
-    /// Δ of this step, as a share of the point.
+    /// Δ of this step, as a share of the point; infinite in a line search.
     pub radius: f64,
     /// Whether the step was kept.
     pub accepted: bool,
@@ -119,6 +120,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    pub(super) fn at(state: State, status: Status, iterations: Vec<Iteration>) -> Self {
+        let sum_of_squares = state.residual.norm_squared();
+        let State { point, residual, jacobian, .. } = state;
+        Self { point, residual, jacobian, sum_of_squares, status, iterations }
+    }
+
     pub(super) fn unevaluated(point: DVector<f64>, status: Status) -> Self {
         let jacobian = DMatrix::zeros(0, point.len());
         let sum_of_squares = f64::NAN;

@@ -1,4 +1,4 @@
-use super::{Domain, Evaluation, Iteration, Options, Outcome, Residuals, Status, minimise};
+use super::{Domain, Evaluation, Globalisation, Iteration, Options, Outcome, Residuals, Status, minimise};
 use nalgebra::{Complex, DMatrix, DVector};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
@@ -284,6 +284,57 @@ fn the_published_rule_stops_early_and_says_so() {
     let options = Options { max_iterations: 1, ..Options::default() };
     let outcome = curve.fit(&[500.0, 1e-4], &Domain::everywhere(2), &options);
     assert_eq!(outcome.status.to_string(), "not converged after 1 iterations");
+}
+
+fn line_search(gain_tolerance: f64) -> Options {
+    Options { globalisation: Globalisation::LineSearch, gain_tolerance, ..Options::default() }
+}
+
+#[test]
+fn a_line_search_halves_steps_until_they_are_no_worse() {
+    // From 5 the whole step ends at −25, its halves at −10, −2.5 and 1.25: the last is nearer to 2.
+    let overshoots: Model = |b, _| (b[0] - 2.0) / ((b[0] - 2.0) * (b[0] - 2.0) + 1.0).sqrt();
+    let mut curve = Curve::new(overshoots, &[2.0], vec![0.0], 0.0);
+    let outcome = curve.fit(&[5.0], &Domain::everywhere(1), &line_search(1e-13));
+    assert!(outcome.status.converged() && (outcome.point[0] - 2.0).abs() < 1e-9, "{}", outcome.point);
+    let kept: Vec<bool> = outcome.iterations.iter().map(|iteration| iteration.accepted).collect();
+    assert_eq!(kept[..4], [false, false, false, true]);
+    let lengths: Vec<f64> = outcome.iterations.iter().map(|iteration| iteration.step).collect();
+    assert_eq!(lengths[1..4], [0.5, 0.25, 0.125].map(|share| share * lengths[0]));
+    let squares = outcome.iterations.windows(2).all(|pair| pair[1].sum_of_squares <= pair[0].sum_of_squares);
+    assert!(squares && outcome.iterations.iter().all(|i| i.accepted == i.gain.is_some_and(|g| g >= 0.0)));
+}
+
+#[test]
+fn a_line_search_ends_with_the_first_small_gain() {
+    let mut curve = Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.5);
+    let outcome = curve.fit(&[250.0, 5e-4], &Domain::everywhere(2), &line_search(0.01));
+    assert_eq!(outcome.status.to_string(), "the residual fell by less than 1e-2 between two iterations");
+    let gains: Vec<f64> = outcome.iterations.iter().filter_map(|i| i.gain.filter(|_| i.accepted)).collect();
+    let (last, before) = gains.split_last().unwrap();
+    assert!(*last <= 0.01 && !before.is_empty() && before.iter().all(|&gain| gain > 0.01), "{gains:?}");
+    let full = curve.fit_freely(&[250.0, 5e-4]);
+    assert!(outcome.sum_of_squares < full.sum_of_squares * 1.01);
+    let limited = Options { max_iterations: 1, ..line_search(1e-13) };
+    let outcome = curve.fit(&[500.0, 1e-4], &Domain::everywhere(2), &limited);
+    assert_eq!(outcome.status, Status::IterationLimit { limit: 1 });
+}
+
+#[test]
+fn a_line_search_keeps_to_the_domain_and_off_points_without_an_answer() {
+    let curve = || Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.0);
+    let start = vector(&[500.0, 1e-4]);
+    let bounded = Domain { rows: matrix(&[[0.0, -1.0]]), bounds: vector(&[-4e-4]), roughness: None };
+    let outcome = curve().fit(start.as_slice(), &bounded, &line_search(1e-13));
+    assert!(outcome.status.converged() && outcome.point[1] <= 4e-4 * (1.0 + 1e-12));
+    assert_eq!(outcome.iterations.last().unwrap().active.len(), 1);
+    let mut fragile = Fragile { curve: curve(), most: 5.6e-4 };
+    let everywhere = Domain::everywhere(2);
+    let Ok(outcome) = minimise(&mut fragile, &start, &everywhere, &line_search(1e-13), &mut |_| {});
+    assert_close(&outcome.point, &[239.0, 5.5e-4], 1e-6);
+    let mut fragile = Fragile { curve: curve(), most: 1e-4 };
+    let Ok(outcome) = minimise(&mut fragile, &start, &everywhere, &line_search(1e-13), &mut |_| {});
+    assert_eq!(outcome.status, Status::Stalled { reason: Some("no equilibrium".to_owned()) });
 }
 
 #[test]

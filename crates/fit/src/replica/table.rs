@@ -7,7 +7,7 @@
 //!                 edge         ●     the last held segment lies on the free cloth and carries the measured slope
 //! ```
 //!
-//! To hold only what lies on the table would make the fitted rigidity far too large: the cloth bends at the edge itself,
+//! That is the default. To hold only what lies on the table would make the fitted rigidity far too large: the cloth bends at the edge itself,
 //! which falls between two lines. Each line is seen by many nodes: their middle is what is held.
 
 use super::bad_geometry;
@@ -17,8 +17,31 @@ use crate::specimen::Specimen;
 use cloth_sim::load::Held;
 use nalgebra::Vector3;
 
-/// Lines past the edge that are held.
-const PAST_EDGE: usize = 2;
+/// What a table holds of a sheet, and how the rest of it may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TableHold {
+    /// So many lines of nodes past the edge are held. Default 2; published 0: what lies on the table.
+    pub past_edge: usize,
+    /// Lines along the edge are straightened and move as a whole, so that the sheet bends as a cylinder. Default true;
+    /// published false: held nodes are where they were seen, and every free one moves by itself.
+    pub cylinder: bool,
+    /// Errors of the places of held lines are weighed in the residuals. Default true; published false.
+    pub whitened: bool,
+}
+
+impl Default for TableHold {
+    fn default() -> Self {
+        Self { past_edge: 2, cylinder: true, whitened: true }
+    }
+}
+
+impl TableHold {
+    /// Only what lies on the table is held. Source: Miguel et al. 2012, §5.1.
+    pub const PUBLISHED: Self = Self { past_edge: 0, cylinder: false, whitened: false };
+}
+
+/// About a single held line a sheet would turn freely.
+const FEWEST_HELD: usize = 2;
 
 /// A sheet must reach so many times farther out than it does across: its sides then are along the edge within about 4°.
 const STRAIGHT: f64 = 12.0;
@@ -38,17 +61,19 @@ pub(super) struct Lines {
     nodes: Vec<Vec<usize>>,
     edge: Vector3<f64>,
     outward: Vector3<f64>,
+    hold: TableHold,
 }
 
-/// What is held in one frame, and the smoothed shape.
+/// What is held in one frame, and the shape to start from.
 #[derive(Debug, Clone)]
 pub(super) struct Overhang {
     /// How many lines are held.
     pub(super) held: usize,
     /// Length of cloth past the edge, m.
     pub(super) length: f64,
-    /// Every line straightened, 3 stacked coordinates a node, m.
-    pub(super) smooth: Vec<f64>,
+    /// Every line straightened or, if the sheet is no cylinder, every node that was seen where it was seen; 3 stacked
+    /// coordinates a node, m.
+    pub(super) start: Vec<f64>,
 }
 
 impl Lines {
@@ -56,7 +81,12 @@ impl Lines {
     ///
     /// # Errors
     /// No table, no shape, or an edge that is not along a side of the specimen.
-    pub(super) fn new(sequence: &Sequence, specimen: &Specimen, shapes: &[Option<Vec<f64>>]) -> Result<Self> {
+    pub(super) fn new(
+        sequence: &Sequence,
+        specimen: &Specimen,
+        shapes: &[Option<Vec<f64>>],
+        hold: TableHold,
+    ) -> Result<Self> {
         let Some(table) = sequence.table else {
             return Err(bad_geometry(
                 sequence,
@@ -95,7 +125,7 @@ impl Lines {
         if reach[along] < 0.0 {
             nodes.reverse();
         }
-        Ok(Self { nodes, edge, outward })
+        Ok(Self { nodes, edge, outward, hold })
     }
 
     /// What one observed shape says; `None` where too little hangs over, or a line that matters was hardly seen. On the
@@ -106,27 +136,28 @@ impl Lines {
         let past = |line: &Line| (line.centre - self.edge).dot(&self.outward);
         // The table ends before the first line past its edge; what hangs may swing back under it.
         let on_table = seen.iter().position(|line| line.as_ref().is_some_and(|line| past(line) > 0.0))?;
-        let held = on_table + PAST_EDGE;
-        if on_table == 0 || held + FEWEST_FREE > self.nodes.len() {
+        let held = on_table + self.hold.past_edge;
+        if on_table == 0 || held < FEWEST_HELD || held + FEWEST_FREE > self.nodes.len() {
             return None;
         }
         let hanging: Vec<&Line> = seen[on_table - 1..].iter().map(Option::as_ref).collect::<Option<_>>()?;
         // All lines are parallel: tilts of their own, which noise gives them, would strain a sheet that bends as a cylinder.
         let along = seen.iter().flatten().map(|line| line.slope).sum::<Vector3<f64>>().normalize();
-        let mut smooth = vec![0.0; shape.len()];
+        let mut start = vec![0.0; shape.len()];
         for (line, nodes) in self.nodes.iter().enumerate() {
             let (later, nearest) =
                 seen.iter().enumerate().skip(line).find_map(|(later, l)| Some((later, l.as_ref()?)))?;
             let [from, to] = [line, later].map(|line| specimen.mesh.positions[self.nodes[line][0]]);
             let back = self.outward * (to - from).norm();
             for &node in nodes {
-                let place = nearest.at(specimen.mesh.positions[node] + (to - from), &along) - back;
-                smooth[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
+                let straight = nearest.at(specimen.mesh.positions[node] + (to - from), &along) - back;
+                let place = point(shape, node).filter(|_| !self.hold.cylinder).unwrap_or(straight);
+                start[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
             }
         }
         let lengths = hanging[1..].windows(2).map(|pair| (pair[1].centre - pair[0].centre).norm());
         let length = lengths.sum::<f64>() + past(hanging[1]);
-        Some(Overhang { held, length, smooth })
+        Some(Overhang { held, length, start })
     }
 
     /// The nodes of the first lines, all held; the last two lines as clips 0 and 1, since their places and the slope
@@ -144,13 +175,13 @@ impl Lines {
         square.sqrt() / line.len() as f64
     }
 
-    /// All lines but the first few, which are held. Each moves as a whole, so that the sheet bends as a cylinder.
+    /// The lines that move as a whole, so that the sheet bends as a cylinder: all but the first few, which are held.
     ///
     /// Hinges of a triangulated sheet tie bending to twist: split all one way, a sheet hung off a table twists (by 5 mm at
     /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it a fifth softer. A cylinder knows
     /// neither: its flexural rigidity is 3 × the hinges' stiffness, as the curve files say.
-    pub(super) fn beyond(&self, lines: usize) -> &[Vec<usize>] {
-        &self.nodes[lines..]
+    pub(super) fn tied(&self, held: usize) -> &[Vec<usize>] {
+        if self.hold.cylinder { &self.nodes[held..] } else { &[] }
     }
 
     /// From the edge to the tip, m; `None` if the sheet does not reach the edge.

@@ -1,7 +1,7 @@
 //! One frame in equilibrium: where its solve starts, how it falls back, and what the solution's factor tells.
 
 use super::residual::{seen_unknowns, whitening};
-use super::{Objective, Simulation, SolverPool};
+use super::{Objective, Simulation, SolveStart, SolverPool};
 use crate::boundary::Whitening;
 use crate::replica::{Replica, ReplicaFrame};
 use cloth_sim::cloth::Cloth;
@@ -76,19 +76,23 @@ impl<'a> Simulation<'a> {
         // A poisoned pool only means that another frame panicked; its solvers hold no state that matters.
         let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
         let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
-        let mut x = predicted(state, cloth, change);
+        let mut x = match self.task.start {
+            SolveStart::LastEquilibrium => predicted(state, cloth, change),
+            SolveStart::Measured => measured_shape(replica, frame),
+        };
+        let falls_back = self.task.start == SolveStart::LastEquilibrium;
         let settings = &self.task.settings;
         let mut found = solver.solve(curves, &mut x, settings);
         self.meter.add(&found);
         let mut escaped = found.escaped;
-        if !found.converged() {
+        if !found.converged() && falls_back {
             // A measured shape or a prediction that was too far off: from the replica's own start instead.
             x.copy_from_slice(&frame.start);
             found = solver.solve(curves, &mut x, settings);
             self.meter.add(&found);
             escaped = found.escaped;
         }
-        if !found.converged() && !replica.is_on_table() {
+        if !found.converged() && falls_back && !replica.is_on_table() {
             // In load steps, from the flat sheet.
             x = replica.rest();
             found = solver.drive(curves, &mut x, &frame.start, settings);
@@ -262,29 +266,27 @@ fn force_derivatives(
     frame.forces.iter().flat_map(|component| slopes.iter().map(|groups| component.of(groups))).collect()
 }
 
+/// The replica's own start, with every free node that was seen where it was seen. Off a table that start is made of what was
+/// seen already.
+fn measured_shape(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
+    let mut x = frame.start.clone();
+    for observed in frame.observed.iter().filter(|_| !replica.is_on_table()) {
+        seen_unknowns(replica, frame).for_each(|(_, coordinate)| x[coordinate] = observed[coordinate]);
+    }
+    x
+}
+
 /// Where the first solve starts: at the measured shape where that leaves the plane, else at the replica's own start or,
 /// where it is nearer to balance, at the measured shape.
 pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
     let cloth = replica.cloth(frame);
     let own = frame.start.clone();
-    let Some(observed) = &frame.observed else {
-        return State { x: own, ..State::default() };
-    };
-    let mut measured = own.clone();
-    for &(coordinate, _) in cloth.free_coordinates().iter().filter(|(c, _)| observed[*c].is_finite()) {
-        measured[coordinate] = observed[coordinate];
-    }
+    let measured = measured_shape(replica, frame);
     let imbalance = |x: &[f64]| {
         let mut gradient = vec![0.0; x.len()];
         cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));
         cloth.free_coordinates().iter().map(|&(c, _)| gradient[c] * gradient[c]).sum::<f64>()
     };
-    let x = if replica.is_on_table() {
-        own
-    } else if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) {
-        measured
-    } else {
-        own
-    };
+    let x = if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) { measured } else { own };
     State { x, ..State::default() }
 }

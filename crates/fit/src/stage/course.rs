@@ -53,6 +53,7 @@ impl Plan {
             areal_density: set.fabric.areal_density_kg_m2,
             nodes: settings.nodes,
             diagonals: settings.diagonals,
+            table: settings.table,
             // Strips cut on the bias are pulled taut, and nobody saw them buckle.
             flat: self.flat || kind == Kind::StretchBias,
         };
@@ -159,6 +160,7 @@ fn simulate<'r>(
         objective: plan.objective,
         known,
         settings: settings.equilibrium,
+        start: settings.solve_start,
         robust: None,
     };
     let simulation = Simulation::new(replicas, task, first, Arc::clone(&watch.meter));

@@ -12,6 +12,30 @@ use crate::simulation::Objective;
 use cloth_sim::curve::{StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Curves, Model};
 
+/// The constant stiffness that a stage starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FirstStiffness {
+    /// What balances the clip forces on blended shapes (equilibrium gap), or what Peirce's formula makes of an overhang.
+    #[default]
+    FromMeasurements,
+    /// The same for every fabric: 100 N/m for stretch, 10 N/m for shear, a flexural rigidity of 1e-5 N·m for bending. The
+    /// published method does not say where it starts; these are ours, round numbers among light and heavy fabrics.
+    Constant,
+}
+
+impl FirstStiffness {
+    /// Stretch or shear, N/m; `None` if the measurements say.
+    fn of_membrane(self, component: Component) -> Option<f64> {
+        let constant = if component.is_stretch() { 100.0 } else { 10.0 };
+        (self == Self::Constant).then_some(constant)
+    }
+
+    /// Flexural rigidity, N·m; `None` if the measurements say.
+    fn of_bending(self) -> Option<f64> {
+        (self == Self::Constant).then_some(1e-5)
+    }
+}
+
 /// Where a stage starts.
 pub(super) struct Start {
     /// The constant stiffness, N/m (bending: N·m per the model's own strain).
@@ -24,7 +48,7 @@ pub(super) struct Start {
     pub(super) assumed: Vec<Component>,
 }
 
-/// Finds it from forces (equilibrium gap) or from shapes (Peirce's cantilever).
+/// Finds it from forces (equilibrium gap) or from shapes (Peirce's cantilever), or takes a constant.
 ///
 /// # Errors
 /// Measurements that no positive stiffness explains.
@@ -35,9 +59,12 @@ pub(super) fn start(
     settings: &Settings,
 ) -> Result<Start> {
     let stiffness = match plan.objective {
-        Objective::Forces => from_forces(plan, replicas, settings)?,
+        Objective::Forces => {
+            let constant = settings.first_stiffness.of_membrane(plan.fitted[0]);
+            constant.unwrap_or(from_forces(plan, replicas, settings)?)
+        }
         Objective::Positions => {
-            from_shapes(plan, replicas)?.min(most_that_bends(plan, knowledge.curves(), settings))
+            from_shapes(plan, replicas, settings)?.min(most_that_bends(plan, knowledge.curves(), settings))
         }
     };
     let mut known = knowledge.without(&plan.fitted).curves().clone();
@@ -147,14 +174,16 @@ fn most_that_bends(plan: &Plan, known: &Curves, settings: &Settings) -> f64 {
     if settings.model == Model::Springs && largest > 0.0 { largest } else { f64::INFINITY }
 }
 
-/// The median over all frames of the stiffness that Peirce's formula gives.
-fn from_shapes(plan: &Plan, replicas: &[Replica]) -> Result<f64> {
+/// The median over all frames of the stiffness that Peirce's formula gives, or of that which gives a constant rigidity.
+fn from_shapes(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result<f64> {
+    let constant = settings.first_stiffness.of_bending();
     let mut found: Vec<f64> = Vec::new();
     for replica in replicas {
         for frame in &replica.frames {
             let bending = replica.cloth(frame).bending();
             let rolled = plan.fitted.iter().find_map(|&component| bending?.rolled(component));
             if let (Some(rolled), Some([rigidity, curvature])) = (rolled, replica.peirce(frame)) {
+                let rigidity = constant.unwrap_or(rigidity);
                 let stress = rigidity * curvature / rolled.lever(curvature);
                 found.push(stress / rolled.strain(curvature));
             }

@@ -6,7 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
 /// Width of the names, of the bars with their notes, and height of a row.
-const NAMES: u32 = 560;
+const NAMES: u32 = 640;
 const BARS: u32 = 900;
 const ROW: u32 = 52;
 
@@ -57,7 +57,7 @@ pub(super) fn draw(
             .build_cartesian_2d(x.1, rows..0.0)?;
         let mut mesh = chart.configure_mesh();
         mesh.disable_y_axis().disable_y_mesh().x_desc(x.0).light_line_style(WHITE);
-        mesh.label_style(("sans-serif", 28)).draw()?;
+        mesh.x_label_formatter(&|value| format!("{value}")).label_style(("sans-serif", 28)).draw()?;
         for (row, bar) in bars.iter().enumerate() {
             let middle = row as f64 + 0.5;
             let mut from = 0.0;

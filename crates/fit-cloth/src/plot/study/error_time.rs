@@ -11,11 +11,14 @@ use plotters::style::{BLACK, Color};
 /// # Errors
 /// No fit at all.
 pub(super) fn of_fits(study: &Study) -> Drawn<String> {
-    let most = |of: fn(&Run) -> usize| study.part(Part::Fit).map(of).max().unwrap_or(0);
-    let (frames, points) = (most(|run| run.frames), most(|run| run.points.unwrap_or(0)));
+    let fits = || study.part(Part::Fit);
+    let points = fits().filter_map(|run| run.points).max();
     // A fit that lost a frame or failed is shown too; one that was given fewer is not.
-    let whole = |run: &&Run| run.points == Some(points) && 10 * run.frames > 9 * frames;
-    let runs: Vec<&Run> = study.part(Part::Fit).filter(whole).collect();
+    let frames = |nodes: usize| fits().filter(|run| run.nodes == nodes).map(|run| run.frames).max();
+    let whole = |run: &&Run| {
+        run.points == points && frames(run.nodes).is_some_and(|all| 10 * run.frames > 8 * all)
+    };
+    let runs: Vec<&Run> = fits().filter(whole).collect();
     draw("Fits: error against run time", "curve error, share of the largest stress", &runs, |run| run.error_curve)
 }
 

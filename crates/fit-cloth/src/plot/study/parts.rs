@@ -23,7 +23,7 @@ fn bar(row: &Ablated) -> Bar {
         _ => String::new(),
     };
     Bar {
-        name: format!("{} ({})", row.part, row.scene),
+        name: format!("{}, {}", row.scene, row.part),
         pieces: vec![(100.0 * row.saving().max(-1.0), if row.by_default { MODEL } else { LOADING })],
         note,
     }
