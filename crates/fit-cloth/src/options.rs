@@ -4,8 +4,8 @@ mod choice;
 mod flags;
 
 pub use choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
-pub(crate) use flags::{refuse_within, use_threads};
 pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
+pub(crate) use flags::{refuse_within, use_threads};
 
 use crate::command::compare::CompareOptions;
 use crate::command::goal;

@@ -27,7 +27,7 @@ mod subject;
 mod table;
 
 pub use ablation::Ablated;
-pub use extent::Extent;
+pub use extent::{Extent, Topic};
 pub use noise::{Level, levels};
 pub use page::{Section, sections};
 pub use pareto::front;
@@ -65,12 +65,25 @@ impl Study {
 /// # Errors
 /// A set that not even the reference fit can be made of; scenes that the rig cannot make.
 pub fn run(subject: &Subject, extent: &Extent, progress: &Progress) -> Result<Study> {
-    let (reference, told) = fits::reference(subject, extent, progress)?;
-    let mut runs = equilibria::runs(&subject.fabric, extent, progress)?;
-    let fits = fits::runs(subject, &reference, extent, progress);
-    runs.extend(fits.iter().flat_map(|fit| fit.rows.iter().cloned()));
-    runs.extend(noise::runs(&subject.fabric, extent, progress)?);
-    let mut ablation = ablation::scenes(&subject.fabric, extent, progress)?;
-    ablation.extend(ablation::of_fits(subject, &reference, &fits, extent, progress));
+    let fabric = &subject.fabric;
+    let (mut runs, mut ablation, mut told) = (Vec::new(), Vec::new(), String::new());
+    if extent.has(Topic::Equilibria) {
+        runs.extend(equilibria::runs(fabric, extent, progress)?);
+    }
+    if extent.has(Topic::Noise) {
+        runs.extend(noise::runs(fabric, extent, progress)?);
+    }
+    if extent.has(Topic::Ablation) {
+        ablation.extend(ablation::scenes(fabric, extent, progress)?);
+    }
+    if extent.has(Topic::Fits) {
+        let reference;
+        (reference, told) = fits::reference(subject, extent, progress)?;
+        let fits = fits::runs(subject, &reference, extent, progress);
+        runs.extend(fits.iter().flat_map(|fit| fit.rows.iter().cloned()));
+        if extent.has(Topic::Ablation) {
+            ablation.extend(ablation::of_fits(subject, &reference, &fits, extent, progress));
+        }
+    }
     Ok(Study { fabric: subject.set.fabric.name.clone(), reference: told, runs, ablation })
 }

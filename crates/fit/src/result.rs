@@ -49,8 +49,7 @@ pub fn check_output(folder: &Path) -> Result<()> {
         Model::ALL.iter().any(|model| model.to_string() == name(folder)) && is_result(folder)
     };
     let entries = visible(folder);
-    let others =
-        [("compare.json", &COMPARED[..]), ("validation.json", &VALIDATED), ("study.csv", &STUDIED)];
+    let others = [("compare.json", &COMPARED[..]), ("validation.json", &VALIDATED), ("study.csv", &STUDIED)];
     let is_other = others.iter().any(|(main, all)| holds(folder, main, all));
     if is_other || is_result(folder) || entries.iter().all(is_model) {
         return Ok(());

@@ -51,7 +51,9 @@ pub(super) fn log_figure(
 ) -> Drawn<String> {
     // Of every decade 1, 2 and 5.
     let power = |value: &f64| match value.abs() {
-        size if !['1', '2', '5'].contains(&format!("{size:e}").chars().next().unwrap_or(' ')) => String::new(),
+        size if !['1', '2', '5'].contains(&format!("{size:e}").chars().next().unwrap_or(' ')) => {
+            String::new()
+        }
         size if (1e-3..1e4).contains(&size) => format!("{value}"),
         _ => format!("{value:e}"),
     };

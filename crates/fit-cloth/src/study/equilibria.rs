@@ -135,7 +135,8 @@ impl Ladder<'_> {
 
     /// The mesh that all are compared with: it has an order, and no error.
     fn finest(&self, extent: &Extent, mut shapes: Vec<Option<Vec<f64>>>) -> Run {
-        let mut run = Run::new(Part::Equilibrium, &self.scene.name, self.model, Solver::Default, extent.finest);
+        let mut run =
+            Run::new(Part::Equilibrium, &self.scene.name, self.model, Solver::Default, extent.finest);
         run.frames = self.finest.frames.len();
         run.spent = self.finest.spent;
         run.ending = self.finest.ending.clone();

@@ -1,10 +1,31 @@
 //! How much a study runs.
 
+use clap::ValueEnum;
 use cloth_sim::material::Model;
+
+/// A topic of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Topic {
+    /// Equilibria of scenes on finer and finer meshes
+    Equilibria,
+    /// Fits of the set
+    Fits,
+    /// Curve error against noise
+    Noise,
+    /// What parts save and cost; those of fits only with fits
+    Ablation,
+}
+
+impl Topic {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Equilibria, Self::Fits, Self::Noise, Self::Ablation];
+}
 
 /// How much a study runs. `--quick` and the full study are two values of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extent {
+    /// What is run at all.
+    pub topics: Vec<Topic>,
     /// The models of equilibria and fits.
     pub models: Vec<Model>,
     /// Nodes a side of the meshes of equilibria, from coarse to fine, each with twice the cells of the one before.
@@ -35,6 +56,7 @@ impl Extent {
     /// About a minute.
     pub fn quick() -> Self {
         Self {
+            topics: Topic::ALL.to_vec(),
             models: Model::ALL.to_vec(),
             meshes: vec![13, 25, 49],
             finest: 97,
@@ -48,6 +70,11 @@ impl Extent {
             noise_nodes: 13,
             rig_nodes: 31,
         }
+    }
+
+    /// True if a topic is run.
+    pub fn has(&self, topic: Topic) -> bool {
+        self.topics.contains(&topic)
     }
 
     /// About half an hour.

@@ -110,9 +110,8 @@ pub(super) fn fit(
     let set = thinned(set, every);
     let meter = progress.meter();
     let mut watch = Watch { meter: meter.clone(), observe: Box::new(|_| ()) };
-    let (found, spent) = spend(&meter, || {
-        incremental::fit(&set, &Stage::ALL, &Knowledge::default(), settings, &mut watch)
-    });
+    let (found, spent) =
+        spend(&meter, || incremental::fit(&set, &Stage::ALL, &Knowledge::default(), settings, &mut watch));
     let mut whole = Run::new(Part::Fit, "all", model, solver, nodes);
     whole.points = Some(points);
     whole.spent = spent;
@@ -193,7 +192,8 @@ fn thinned(set: &MeasurementSet, every: usize) -> MeasurementSet {
     let mut set = set.clone();
     for sequence in &mut set.sequences {
         // Counted from the middle of a loading and unloading, which is the largest, or from the end.
-        let anchor = if sequence.table.is_some() { sequence.frames.len() - 1 } else { sequence.frames.len() / 2 };
+        let anchor =
+            if sequence.table.is_some() { sequence.frames.len() - 1 } else { sequence.frames.len() / 2 };
         let frames = std::mem::take(&mut sequence.frames).into_iter().enumerate();
         let kept = frames.filter(|(index, _)| index.abs_diff(anchor).is_multiple_of(every));
         sequence.frames = kept.map(|(_, frame)| frame).collect();

@@ -9,13 +9,13 @@
 //! The floor is that of the noise alone, at the true curve. All control points are in use, so that bias and variance are
 //! not mixed.
 
+use super::Study;
 use super::extent::Extent;
+use super::own_mesh;
 use super::physical::{Reference, distance, loads};
 use super::run::{Ending, Part, Run, root_mean_square, spend};
-use super::Study;
 use super::scene::Scene;
 use super::solver::Solver;
-use super::own_mesh;
 use crate::progress::Progress;
 use cloth_fit::error::Result;
 use cloth_fit::frame::{Kind, MeasurementSet};

@@ -91,7 +91,9 @@ impl Reference {
     /// Control points that make no curve.
     pub(super) fn told_in(&self, model: Model, mesh: &Mesh) -> Result<Curves> {
         let known = self.curves.components().filter_map(|c| Some((c, self.curves.get(c)?)));
-        known.map(|(component, curve)| Ok((component, self.curve_in(model, mesh, component, curve)?))).collect()
+        known
+            .map(|(component, curve)| Ok((component, self.curve_in(model, mesh, component, curve)?)))
+            .collect()
     }
 
     fn curve_in(
@@ -108,10 +110,10 @@ impl Reference {
             }
             let curvature = f64::max(0.5 * last / HINGE_STRAIN_PER_CURVATURE, 1.0);
             let moment = curve.stress(HINGE_STRAIN_PER_CURVATURE * curvature);
-            let rolled = Bending::new(model, mesh, &[component])?.and_then(|bending| bending.rolled(component));
-            let stiffness = rolled.map_or(0.0, |rolled: Rolled| {
-                moment / (rolled.lever(curvature) * rolled.strain(curvature))
-            });
+            let rolled =
+                Bending::new(model, mesh, &[component])?.and_then(|bending| bending.rolled(component));
+            let stiffness = rolled
+                .map_or(0.0, |rolled: Rolled| moment / (rolled.lever(curvature) * rolled.strain(curvature)));
             return StiffnessCurve::constant(
                 stiffness,
                 model.negative_strain(component, Compression::ZeroStrain),
@@ -130,11 +132,7 @@ impl Reference {
             stiffnesses.push(load / other.load(place, |strain| strain));
             strains.push(if strain == 0.0 { 0.0 } else { other.strain(place) });
         }
-        StiffnessCurve::new(
-            strains,
-            stiffnesses,
-            model.negative_strain(component, Compression::ZeroStrain),
-        )
+        StiffnessCurve::new(strains, stiffnesses, model.negative_strain(component, Compression::ZeroStrain))
     }
 }
 

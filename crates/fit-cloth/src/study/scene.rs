@@ -1,8 +1,8 @@
 //! A scene: one test of a known fabric, simulated as a fit simulates it, with or without some of its parts.
 
+use super::memory;
 use super::physical::Reference;
 use super::run::{Ending, Spent};
-use super::memory;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::replica::{Replica, ReplicaFrame};
@@ -95,7 +95,8 @@ impl Scene {
         let Some(replica) = replicas.pop() else { return Err(self.failed("no sequence".into())) };
         let mechanics = |source| Error::Mechanics { context: self.name.clone(), source };
         let curves = reference.told_in(settings.model, &replica.specimen.mesh).map_err(mechanics)?;
-        let starts = replica.frames.iter().map(|frame| (Solver::new(replica.cloth(frame)), start(&replica, frame)));
+        let starts =
+            replica.frames.iter().map(|frame| (Solver::new(replica.cloth(frame)), start(&replica, frame)));
         let starts: Vec<_> = starts.collect();
         memory::reset_peak();
         let clock = Instant::now();

@@ -43,11 +43,13 @@ fn fits(study: &Study) -> Option<String> {
     let best = done().min_by(|a, b| error(a).total_cmp(&error(b)))?;
     let near = done().filter(|run| error(run) <= 1.25 * error(best));
     let cheapest = near.min_by(|a, b| a.spent.seconds.total_cmp(&b.spent.seconds))?;
-    let told = |run: &Run| {
-        format!("{} in {:.2} s ({})", percent(run.error_curve), run.spent.seconds, named(run))
-    };
+    let told =
+        |run: &Run| format!("{} in {:.2} s ({})", percent(run.error_curve), run.spent.seconds, named(run));
     Some(match std::ptr::eq(best, cheapest) {
-        true => format!("The least curve error of a fit is {}, and none within a quarter of it is faster.", told(best)),
+        true => format!(
+            "The least curve error of a fit is {}, and none within a quarter of it is faster.",
+            told(best)
+        ),
         false => format!(
             "The least curve error of a fit is {}; the fastest within a quarter of it is {}.",
             told(best),
@@ -68,7 +70,7 @@ fn published(study: &Study) -> Option<String> {
     }
     let [fast, slow] = [default, published].map(|run| run.spent);
     Some(format!(
-        "As published the same fit on {0}x{0} nodes takes {1:.1} times as long and {2:.1} times as many factorisations.",
+        "As published the fit with all points and frames on {0}x{0} nodes takes {1:.1} times as long and {2:.1} times as many factorisations.",
         default.nodes,
         slow.seconds / fast.seconds,
         slow.counters.factorisations as f64 / fast.counters.factorisations.max(1) as f64

@@ -32,7 +32,8 @@ pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
     let runs: Vec<&Run> = study.part(Part::Equilibrium).filter(usual).collect();
     let point = |run: &Run| Some((cell(run), run.error_position_mm.filter(|error| *error > 0.0)?));
     let points: Vec<(f64, f64)> = runs.iter().filter_map(|run| point(run)).collect();
-    let cells = points.iter().fold([f64::MAX, 0.0], |[low, high]: [f64; 2], (x, _)| [low.min(*x), high.max(*x)]);
+    let cells =
+        points.iter().fold([f64::MAX, 0.0], |[low, high]: [f64; 2], (x, _)| [low.min(*x), high.max(*x)]);
     let errors = decades(points.iter().map(|(_, error)| *error)).ok_or("no errors")?;
     let title = format!("Equilibria on finer meshes, {model}");
     let axes = Axes {

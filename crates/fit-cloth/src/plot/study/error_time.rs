@@ -15,11 +15,12 @@ pub(super) fn of_fits(study: &Study) -> Drawn<String> {
     let points = fits().filter_map(|run| run.points).max();
     // A fit that lost a frame or failed is shown too; one that was given fewer is not.
     let frames = |nodes: usize| fits().filter(|run| run.nodes == nodes).map(|run| run.frames).max();
-    let whole = |run: &&Run| {
-        run.points == points && frames(run.nodes).is_some_and(|all| 10 * run.frames > 8 * all)
-    };
+    let whole =
+        |run: &&Run| run.points == points && frames(run.nodes).is_some_and(|all| 10 * run.frames > 8 * all);
     let runs: Vec<&Run> = fits().filter(whole).collect();
-    draw("Fits: error against run time", "curve error, share of the largest stress", &runs, |run| run.error_curve)
+    draw("Fits: error against run time", "curve error, share of the largest stress", &runs, |run| {
+        run.error_curve
+    })
 }
 
 /// Of one scene's equilibria with the usual tolerance.
@@ -38,7 +39,8 @@ pub(super) fn of_scene(study: &Study, scene: &str) -> Drawn<String> {
 fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>) -> Drawn<String> {
     let point = |run: &Run| Some((run.spent.seconds, error(run).filter(|error| *error > 0.0)?));
     let times = decades(runs.iter().map(|run| run.spent.seconds)).ok_or("no runs")?;
-    let errors = decades(runs.iter().filter_map(|run| point(run)).map(|(_, error)| error)).ok_or("no errors")?;
+    let errors =
+        decades(runs.iter().filter_map(|run| point(run)).map(|(_, error)| error)).ok_or("no errors")?;
     // Room for the legend and for what failed.
     let (times, errors) = (times.start..times.end * 30.0, errors.start..errors.end * 2.0);
     let top = errors.end / 1.4;

@@ -12,7 +12,12 @@ pub(super) fn draw(study: &Study) -> Drawn<String> {
     let legend = [("in by default", MODEL), ("left out by default", LOADING)];
     // Notes stand beyond the longest bar.
     let extent = lowest.max(-100.0)..190.0;
-    bars::draw("What leaving out a part saves, and the error of that", ("saved time [%]", extent), &legend, &bars)
+    bars::draw(
+        "What leaving out a part saves, and the error of that",
+        ("saved time [%]", extent),
+        &legend,
+        &bars,
+    )
 }
 
 fn bar(row: &Ablated) -> Bar {

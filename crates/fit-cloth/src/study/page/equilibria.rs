@@ -21,7 +21,8 @@ fn ladders(study: &Study) -> Vec<(&str, Model)> {
 }
 
 pub(super) fn meshes(study: &Study) -> Section {
-    let mut meshes: Vec<usize> = usual(study).filter(|run| run.error_position_mm.is_some()).map(|run| run.nodes).collect();
+    let mut meshes: Vec<usize> =
+        usual(study).filter(|run| run.error_position_mm.is_some()).map(|run| run.nodes).collect();
     meshes.sort_unstable();
     meshes.dedup();
     let largest = meshes.last().copied().unwrap_or(0);
@@ -31,7 +32,9 @@ pub(super) fn meshes(study: &Study) -> Section {
             usual(study).find(|r| (&r.test[..], r.model, r.solver, r.nodes) == (test, model, solver, nodes))
         };
         let default = |nodes| run(Solver::Default, nodes);
-        let orders: Vec<&Run> = usual(study).filter(|r| r.test == test && r.model == model && r.solver == Solver::Default).collect();
+        let orders: Vec<&Run> = usual(study)
+            .filter(|r| r.test == test && r.model == model && r.solver == Solver::Default)
+            .collect();
         let order = orders.iter().filter_map(|run| run.order).last();
         let cost = |run: Option<&Run>| match run {
             Some(run) if run.failed() => run.ending.to_string(),
@@ -49,7 +52,9 @@ pub(super) fn meshes(study: &Study) -> Section {
     let mut names = header(&["scene", "model", "order"]);
     names.extend(meshes.iter().map(|nodes| format!("mm at {nodes}")));
     names.push(format!("force at {largest}"));
-    names.extend(["default", "as published"].map(|solver| format!("{solver}, {largest}: time, factorisations")));
+    names.extend(
+        ["default", "as published"].map(|solver| format!("{solver}, {largest}: time, factorisations")),
+    );
     names.push("several equilibria".into());
     Section {
         title: "Equilibria on finer meshes".into(),
@@ -64,7 +69,8 @@ pub(super) fn meshes(study: &Study) -> Section {
 
 pub(super) fn tolerances(study: &Study) -> Section {
     let of_stvk = || study.part(Part::Equilibrium).filter(|run| run.model == Model::Stvk);
-    let tried = of_stvk().find(|run| run.tolerance != run.solver.equilibrium().tolerance).map(|run| run.nodes);
+    let tried =
+        of_stvk().find(|run| run.tolerance != run.solver.equilibrium().tolerance).map(|run| run.nodes);
     let nodes = tried.unwrap_or(0);
     let mut scenes: Vec<&str> = of_stvk().map(|run| &run.test[..]).collect();
     scenes.dedup();
@@ -78,11 +84,16 @@ pub(super) fn tolerances(study: &Study) -> Section {
     let row = |&(solver, tolerance): &(Solver, _)| {
         let cell = |scene: &&str| {
             let run = of_stvk().find(|run| {
-                run.test == **scene && run.nodes == nodes && run.solver == solver && run.tolerance == tolerance
+                run.test == **scene
+                    && run.nodes == nodes
+                    && run.solver == solver
+                    && run.tolerance == tolerance
             });
             run.map_or("-".into(), |run| match run.failed() {
                 true => run.ending.to_string(),
-                false => format!("{} mm, {}", short(run.error_position_mm), run.spent.counters.factorisations),
+                false => {
+                    format!("{} mm, {}", short(run.error_position_mm), run.spent.counters.factorisations)
+                }
             })
         };
         let mut cells = vec![solver.to_string(), table::tolerance(tolerance)];

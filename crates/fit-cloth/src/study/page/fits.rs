@@ -60,13 +60,19 @@ fn point(run: &Run) -> Option<[f64; 2]> {
 pub(super) fn stages(study: &Study) -> Section {
     let most = study.part(Part::Stage).map(|run| run.nodes).max().unwrap_or(0);
     let of = |solver| {
-        study.part(Part::Stage).filter(move |run| {
-            run.solver == solver && run.model == Model::Stvk && run.nodes == most
-        })
+        study
+            .part(Part::Stage)
+            .filter(move |run| run.solver == solver && run.model == Model::Stvk && run.nodes == most)
     };
-    let mut names: Vec<&str> = of(Solver::Default).chain(of(Solver::AsPublished)).map(|run| &run.test[..]).collect();
+    let mut names: Vec<&str> =
+        of(Solver::Default).chain(of(Solver::AsPublished)).map(|run| &run.test[..]).collect();
     let mut seen = Vec::new();
-    names.retain(|name| !seen.contains(name) && { seen.push(name); true });
+    names.retain(|name| {
+        !seen.contains(name) && {
+            seen.push(name);
+            true
+        }
+    });
     let row = |name: &&str| {
         let mut cells = vec![name.to_string()];
         for solver in Solver::ALL {
