@@ -54,6 +54,13 @@ pub struct Study {
 }
 
 impl Study {
+    /// Nodes a side of the finest grid on which fits were run by both solvers, or by one if there is none.
+    pub fn finest_fit(&self) -> Option<usize> {
+        let of = |solver| self.part(Part::Fit).filter(move |run| run.solver == solver).map(|run| run.nodes);
+        let both = of(Solver::AsPublished).filter(|nodes| of(Solver::Default).any(|other| other == *nodes));
+        both.max().or(of(Solver::Default).max())
+    }
+
     /// The rows of one part.
     pub fn part(&self, part: Part) -> impl Iterator<Item = &Run> {
         self.runs.iter().filter(move |run| run.part == part)

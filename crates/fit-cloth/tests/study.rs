@@ -18,6 +18,7 @@ fn smallest() -> Extent {
         finest: 49,
         tolerances_on: 13,
         fit_nodes: vec![7],
+        published_nodes: vec![7],
         usual_nodes: 7,
         points: vec![1],
         every_frames: vec![2],

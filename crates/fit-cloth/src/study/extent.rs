@@ -36,6 +36,8 @@ pub struct Extent {
     pub tolerances_on: usize,
     /// Nodes a side of fits.
     pub fit_nodes: Vec<usize>,
+    /// Those of them on which the published method is run too: it takes ten times as long or more.
+    pub published_nodes: Vec<usize>,
     /// Nodes a side of the fits with fewer control points or frames, and of the scenes that leave parts out.
     pub usual_nodes: usize,
     /// Most control points that are tried beside five.
@@ -62,6 +64,7 @@ impl Extent {
             finest: 97,
             tolerances_on: 25,
             fit_nodes: vec![7, 13],
+            published_nodes: vec![7],
             usual_nodes: 13,
             points: vec![1, 2, 3],
             every_frames: vec![2, 3],
@@ -83,6 +86,7 @@ impl Extent {
             meshes: vec![13, 25, 49, 97],
             finest: 193,
             fit_nodes: vec![13, 25, 49],
+            published_nodes: vec![13, 25],
             usual_nodes: 25,
             seeds: 20,
             noise_nodes: 25,

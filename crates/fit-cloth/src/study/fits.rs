@@ -86,7 +86,11 @@ pub(super) fn runs(
     for &model in &extent.models {
         for solver in Solver::ALL {
             let of_nodes = |&nodes| Trial { model, solver, ..Trial::usual(nodes) };
-            trials.extend(extent.fit_nodes.iter().map(of_nodes));
+            let nodes = match solver {
+                Solver::Default => &extent.fit_nodes,
+                Solver::AsPublished => &extent.published_nodes,
+            };
+            trials.extend(nodes.iter().map(of_nodes));
         }
     }
     let usual = Trial::usual(extent.usual_nodes);

@@ -48,7 +48,11 @@ fn header(names: &[&str]) -> Vec<String> {
 
 /// A share in per cent, three digits.
 fn percent(share: Option<f64>) -> String {
-    share.map_or("-".into(), |share| format!("{} %", digits(100.0 * share)))
+    share.map_or("-".into(), |share| match share {
+        // So far off that it does not matter by how much.
+        share if share > 10.0 => "> 1000 %".into(),
+        share => format!("{} %", digits(100.0 * share)),
+    })
 }
 
 /// A number with three digits, or a dash.

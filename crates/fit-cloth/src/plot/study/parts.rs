@@ -23,6 +23,7 @@ pub(super) fn draw(study: &Study) -> Drawn<String> {
 fn bar(row: &Ablated) -> Bar {
     let note = match (&row.ending[1], row.relative_error(), row.error_position_mm) {
         (Ending::Failed(_), ..) => "fails".into(),
+        (_, Some(error), _) if error > 10.0 => "> 1000 %".into(),
         (_, Some(error), _) => format!("{} %", digits(100.0 * error)),
         (_, None, Some(millimetres)) => format!("{} mm", digits(millimetres)),
         _ => String::new(),

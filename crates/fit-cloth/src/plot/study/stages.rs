@@ -19,7 +19,7 @@ const KINDS: [(&str, RGBColor, fn(&str) -> bool); 4] = [
 /// # Errors
 /// No fit.
 pub(super) fn draw(study: &Study) -> Drawn<String> {
-    let nodes = study.part(Part::Stage).map(|run| run.nodes).max().ok_or("no stages")?;
+    let nodes = study.finest_fit().ok_or("no fits")?;
     let mut bars = Vec::new();
     for model in Model::ALL {
         for solver in Solver::ALL {

@@ -58,7 +58,7 @@ fn point(run: &Run) -> Option<[f64; 2]> {
 }
 
 pub(super) fn stages(study: &Study) -> Section {
-    let most = study.part(Part::Stage).map(|run| run.nodes).max().unwrap_or(0);
+    let most = study.finest_fit().unwrap_or(0);
     let of = |solver| {
         study
             .part(Part::Stage)
