@@ -14,6 +14,7 @@ pub mod failure;
 pub mod options;
 pub mod plot;
 pub mod progress;
+pub mod study;
 pub mod text;
 
 use clap::Parser;

@@ -4,13 +4,14 @@ mod choice;
 mod flags;
 
 pub use choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
-pub(crate) use flags::refuse_within;
 pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
+pub(crate) use flags::{refuse_within, use_threads};
 
 use crate::command::compare::CompareOptions;
 use crate::command::goal;
 use crate::command::import::Import;
 use crate::command::rig::RigOptions;
+use crate::command::study::StudyOptions;
 use crate::command::validate::ValidateOptions;
 use clap::{Args, Parser, Subcommand};
 
@@ -50,6 +51,8 @@ pub enum Command {
     Compare(CompareOptions),
     /// Try fitted curves on motions and samples that the fit did not see
     Validate(ValidateOptions),
+    /// Study error against run time, and what each part of a scene saves and costs
+    Study(StudyOptions),
 }
 
 /// How results are told; every command has these flags.

@@ -4,7 +4,9 @@ mod chart;
 mod forces;
 mod measure;
 mod stress;
+mod study;
 
+use crate::study::Study;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::Kind;
 use cloth_fit::incremental::FitReport;
@@ -18,6 +20,8 @@ use std::path::Path;
 const MODEL: RGBColor = RGBColor(31, 90, 160);
 const LOADING: RGBColor = RGBColor(200, 80, 30);
 const UNLOADING: RGBColor = RGBColor(120, 120, 120);
+const THIRD: RGBColor = RGBColor(0, 140, 110);
+const FOURTH: RGBColor = RGBColor(190, 110, 160);
 
 /// Writes a fit's figures into a result folder: every observed curve, and every kind of test on which forces were
 /// measured.
@@ -55,6 +59,22 @@ pub fn write_validation_plots(folder: &Path, model: Model, validation: &Validati
     }
     let sequences: Vec<&SequenceReport> = validation.sequences.iter().map(|s| &s.report).collect();
     write_forces(&plots, model, &sequences)
+}
+
+/// Writes a study's figures into its folder.
+///
+/// # Errors
+/// What the operating system refuses.
+pub fn write_study_plots(folder: &Path, study: &Study) -> Result<()> {
+    let plots = folder.join("plots");
+    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
+    for (name, figure) in study::figures(study) {
+        // What was not run has no figure.
+        if let Ok(figure) = figure {
+            write_file(&plots.join(format!("{name}.svg")), figure.as_bytes())?;
+        }
+    }
+    Ok(())
 }
 
 /// A figure for each kind of test on which forces were measured.

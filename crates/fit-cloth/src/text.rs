@@ -3,6 +3,7 @@
 mod comparison;
 mod residuals;
 mod stage;
+mod study;
 mod summary;
 mod validation;
 mod verdict;
@@ -10,6 +11,7 @@ mod verdict;
 pub use comparison::comparison;
 pub use residuals::residuals;
 pub use stage::stage;
+pub use study::{study, study_page};
 pub use summary::{as_published, missing, summary};
 pub use validation::validation;
 pub use verdict::verdict;

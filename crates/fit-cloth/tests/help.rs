@@ -54,3 +54,8 @@ fn the_examples_of_validate_run() {
 fn the_examples_of_compare_run() {
     examples_run("compare");
 }
+
+#[test]
+fn the_examples_of_study_run() {
+    examples_run("study");
+}

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several, or what a
-/// comparison or a validation writes. Hidden files do not count.
+/// comparison, a validation or a study writes. Hidden files do not count.
 pub fn check_output(folder: &Path) -> Result<()> {
     let refuse = |found: &str| {
         Err(Error::input(
@@ -49,7 +49,7 @@ pub fn check_output(folder: &Path) -> Result<()> {
         Model::ALL.iter().any(|model| model.to_string() == name(folder)) && is_result(folder)
     };
     let entries = visible(folder);
-    let others = [("compare.json", &COMPARED[..]), ("validation.json", &VALIDATED)];
+    let others = [("compare.json", &COMPARED[..]), ("validation.json", &VALIDATED), ("study.csv", &STUDIED)];
     let is_other = others.iter().any(|(main, all)| holds(folder, main, all));
     if is_other || is_result(folder) || entries.iter().all(is_model) {
         return Ok(());
@@ -65,6 +65,9 @@ const COMPARED: [&str; 2] = ["compare.csv", "compare.json"];
 
 /// What stands in the folder of a [validation](crate::validation).
 const VALIDATED: [&str; 5] = ["validation.json", "validation.csv", "measures.csv", "forces.csv", "plots"];
+
+/// What stands in the folder of a study.
+const STUDIED: [&str; 4] = ["study.csv", "ablation.csv", "study.md", "plots"];
 
 /// Writes the result of one model into a folder that exists. A curve that no frame sees has no file.
 ///

@@ -32,6 +32,7 @@ mod test;
 mod truth;
 
 pub use fabric::{BendingPoints, KnownCurves, KnownFabric, LargestExtension, MembranePoints};
+pub use noise::with_noise;
 
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Sequence};

@@ -136,8 +136,13 @@ fn parse_test(name: &str) -> Result<Kind, String> {
     parse_kind(name, &KINDS)
 }
 
+/// The file of a fabric that comes with the program.
+pub(crate) fn known(name: &str) -> Option<&'static str> {
+    KNOWN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
 fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {
-    if let Some((name, text)) = KNOWN.iter().find(|(known, _)| *known == name) {
+    if let Some(text) = known(name) {
         return Ok(KnownFabric::parse(Path::new(name), text)?);
     }
     let path = Path::new(name);

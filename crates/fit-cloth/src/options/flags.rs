@@ -78,7 +78,7 @@ impl SetFlags {
     /// A bad set, or an output folder that is no former result; threads that cannot be.
     pub fn open(&self, suffix: &str) -> Result<(MeasurementSet, PathBuf), Failure> {
         let folder = self.output_folder(suffix);
-        self.use_threads()?;
+        use_threads(self.threads)?;
         check_output(&folder)?;
         self.refuse_inside(&folder)?;
         Ok((read_set(&self.set)?, folder))
@@ -91,18 +91,6 @@ impl SetFlags {
             name.push(suffix);
             PathBuf::from("out").join(name)
         })
-    }
-
-    /// Limits the threads of the whole program.
-    fn use_threads(&self) -> Result<(), Failure> {
-        let Some(threads) = self.threads else { return Ok(()) };
-        let refused =
-            |found: String| Error::Setting { field: "threads", found, expected: "1 to 1024".into() };
-        if !(1..=1024).contains(&threads) {
-            return Err(refused(threads.to_string()).into());
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|error| refused(error.to_string()).into())
     }
 
     /// A result in the place of its own measurements, or among them, would destroy the set.
@@ -135,6 +123,20 @@ impl FitFlags {
         let settings = Settings { model, variant: self.variant.into(), ..self.how.settings(&self.on) };
         if self.as_published { settings.as_published() } else { settings }
     }
+}
+
+/// Limits the threads of the whole program.
+///
+/// # Errors
+/// A number of threads that cannot be.
+pub(crate) fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    let refused = |found: String| Error::Setting { field: "threads", found, expected: "1 to 1024".into() };
+    if !(1..=1024).contains(&threads) {
+        return Err(refused(threads.to_string()).into());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    pool.map_err(|error| refused(error.to_string()).into())
 }
 
 /// Refuses to read a file that the result would replace.

@@ -1,7 +1,7 @@
 //! The instruments: what they add to the truth.
 
 use super::Rig;
-use crate::frame::{Noise, Phase};
+use crate::frame::{MeasurementSet, Noise, Phase};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -100,6 +100,31 @@ impl<'a> Instruments<'a> {
             deviation * sample
         })
     }
+}
+
+/// A set with the instruments' noise, or a multiple of it, added to shapes and forces, and told to whoever fits it.
+///
+/// * `exact` — without noise, with one cord a clip
+/// * `drawn` — multiple of the instruments' noise that is added
+/// * `told` — multiple of it that the set says it has
+pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> MeasurementSet {
+    let mut set = exact.clone();
+    for sequence in &mut set.sequences {
+        let mut random = stream(seed, &sequence.name);
+        let mut normals = |deviation: f64| {
+            Vector3::from_fn(|_, _| {
+                let sample: f64 = StandardNormal.sample(&mut random);
+                drawn * deviation * sample
+            })
+        };
+        for frame in &mut sequence.frames {
+            frame.cords.iter_mut().for_each(|cord| cord.force += normals(FORCE_NOISE));
+            frame.positions.iter_mut().flatten().for_each(|place| *place += normals(POSITION_NOISE));
+        }
+        sequence.noise =
+            Some(Noise { position_m: Some(told * POSITION_NOISE), force_n: Some(told * FORCE_NOISE) });
+    }
+    set
 }
 
 /// A random stream of its own for every seed and name: leaving one out changes no other.

@@ -1,0 +1,87 @@
+//! `fit-cloth study`: error against run time, and what each part that a scene can leave out saves and costs.
+
+use super::{Outcome, tell};
+use crate::failure::Failure;
+use crate::options::{SetFlags, Telling, use_threads};
+use crate::plot::write_study_plots;
+use crate::progress::Progress;
+use crate::study::{self, Extent, Study, Subject, Topic};
+use crate::text;
+use clap::Args;
+use cloth_fit::result::check_output;
+use cloth_fit::store::{replace_folder, write_file};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+const EXAMPLE: &str = "\
+Example:
+  fit-cloth study --quick --topics noise,ablation fixtures/cotton-denim --out out/study
+
+With all topics --quick takes one or two minutes, and the full study about half an hour.
+
+Writes study.md, study.csv (one row a run), ablation.csv (one row a part) and plots/*.svg. Errors are against the known
+curves where the set's fabric is one of the virtual rig's, else against the default fit on the finest grid. Times are of
+this machine, one run at a time: let it do nothing else meanwhile.";
+
+/// `fit-cloth study`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct StudyOptions {
+    /// The measurement set [default: cotton denim, measured on the virtual rig]
+    pub set: Option<PathBuf>,
+    /// Where to write; a former study there is replaced [default: out/ and the set's name with -study]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Coarser meshes and fewer runs
+    #[arg(long)]
+    pub quick: bool,
+    /// What to study [default: all]
+    #[arg(long, value_delimiter = ',', value_enum, hide_default_value = true, default_values_t = Topic::ALL)]
+    pub topics: Vec<Topic>,
+    /// Threads [default: one a core]
+    #[arg(long)]
+    pub threads: Option<usize>,
+}
+
+/// Runs a study. A run that fails is a row that says so, and no failure of the study.
+///
+/// # Errors
+/// Bad input, or an output folder that is no former result; what the operating system refuses.
+pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let extent = if options.quick { Extent::quick() } else { Extent::full() };
+    let extent = Extent { topics: options.topics.clone(), ..extent };
+    let progress = Progress::new("study", !telling.quiet);
+    let (subject, folder) = options.subject(&extent)?;
+    let study = study::run(&subject, &extent, &progress);
+    progress.finish();
+    let study = study?;
+    replace_folder(&folder, |temporary| {
+        write(temporary, &study)?;
+        write_study_plots(temporary, &study)
+    })?;
+    let text = format!("{}\nWritten to {}", text::study(&study), folder.display());
+    tell(telling, output, &text, &study::study_json(&study))?;
+    Ok(Outcome::Done)
+}
+
+impl StudyOptions {
+    /// What is studied, once the folder to write into is known to be one that may be written.
+    fn subject(&self, extent: &Extent) -> Result<(Subject, PathBuf), Failure> {
+        if let Some(set) = &self.set {
+            let flags =
+                SetFlags { set: set.clone(), out: self.out.clone(), nodes: None, threads: self.threads };
+            let (set, folder) = flags.open("-study")?;
+            return Ok((Subject::of_set(set)?, folder));
+        }
+        let folder = self.out.clone().unwrap_or_else(|| PathBuf::from("out/study"));
+        use_threads(self.threads)?;
+        check_output(&folder)?;
+        Ok((Subject::built_in(extent)?, folder))
+    }
+}
+
+fn write(folder: &Path, study: &Study) -> cloth_fit::error::Result<()> {
+    write_file(&folder.join("study.csv"), study::study_csv(study).as_bytes())?;
+    write_file(&folder.join("ablation.csv"), study::ablation_csv(study).as_bytes())?;
+    write_file(&folder.join("study.md"), text::study_page(study).as_bytes())
+}

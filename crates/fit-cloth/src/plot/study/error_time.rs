@@ -1,0 +1,72 @@
+//! Error against wall time, a line a model and solver; what failed stands as crosses along the top.
+
+use super::{Drawn, UNLOADING, decades, dot};
+use crate::plot::chart::{Axes, log_figure};
+use crate::study::{Part, Run, Solver, Study, front};
+use cloth_sim::material::Model;
+use plotters::style::{BLACK, Color};
+
+/// Of the fits with all control points and frames.
+///
+/// # Errors
+/// No fit at all.
+pub(super) fn of_fits(study: &Study) -> Drawn<String> {
+    let fits = || study.part(Part::Fit);
+    let points = fits().filter_map(|run| run.points).max();
+    // A fit that lost a frame or failed is shown too; one that was given fewer is not.
+    let frames = |nodes: usize| fits().filter(|run| run.nodes == nodes).map(|run| run.frames).max();
+    let whole =
+        |run: &&Run| run.points == points && frames(run.nodes).is_some_and(|all| 10 * run.frames > 8 * all);
+    let runs: Vec<&Run> = fits().filter(whole).collect();
+    draw("Fits: error against run time", "curve error, share of the largest stress", &runs, |run| {
+        run.error_curve
+    })
+}
+
+/// Of one scene's equilibria with the usual tolerance.
+///
+/// # Errors
+/// No equilibrium at all.
+pub(super) fn of_scene(study: &Study, scene: &str) -> Drawn<String> {
+    let usual = |run: &&Run| run.test == scene && run.tolerance == run.solver.equilibrium().tolerance;
+    let finest = study.part(Part::Equilibrium).map(|run| run.nodes).max();
+    let runs: Vec<&Run> =
+        study.part(Part::Equilibrium).filter(usual).filter(|run| Some(run.nodes) != finest).collect();
+    let title = format!("Equilibrium, {scene}: error against run time");
+    draw(&title, "error of places [mm]", &runs, |run| run.error_position_mm)
+}
+
+fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>) -> Drawn<String> {
+    let point = |run: &Run| Some((run.spent.seconds, error(run).filter(|error| *error > 0.0)?));
+    let times = decades(runs.iter().map(|run| run.spent.seconds)).ok_or("no runs")?;
+    let errors =
+        decades(runs.iter().filter_map(|run| point(run)).map(|(_, error)| error)).ok_or("no errors")?;
+    // Room for the legend and for what failed.
+    let (times, errors) = (times.start..times.end * 30.0, errors.start..errors.end * 2.0);
+    let top = errors.end / 1.4;
+    let done: Vec<&&Run> = runs.iter().filter(|run| !run.failed() && point(run).is_some()).collect();
+    let best: Vec<[f64; 2]> = done.iter().filter_map(|run| point(run)).map(<[f64; 2]>::from).collect();
+    let failed: Vec<(f64, f64)> = runs
+        .iter()
+        .filter(|run| run.failed())
+        .map(|run| point(run).unwrap_or((run.spent.seconds, top)))
+        .collect();
+    let axes = Axes { title, x: ("wall time [s]", times), y: (y, errors) };
+    log_figure(axes, |chart| {
+        let front = front(&best).into_iter().map(|[seconds, error]| (seconds, error));
+        chart.dashes(front, BLACK.mix(0.55).stroke_width(9), "Pareto front")?;
+        for model in Model::ALL {
+            for solver in Solver::ALL {
+                let own = done.iter().filter(|run| run.model == model && run.solver == solver);
+                let points: Vec<(f64, f64)> = own.filter_map(|run| point(run)).collect();
+                if points.is_empty() {
+                    continue;
+                }
+                let (size, style) = dot(model, solver);
+                chart.path(points.iter().copied(), super::colour(model))?;
+                chart.dots(points.iter().copied(), (size, style), &format!("{model}, {solver}"))?;
+            }
+        }
+        if failed.is_empty() { Ok(()) } else { chart.crosses(failed, UNLOADING.stroke_width(4), "failed") }
+    })
+}

@@ -1,0 +1,40 @@
+//! What leaving out each part saves, and which error it causes.
+
+use super::bars::{self, Bar};
+use super::{Drawn, LOADING, MODEL};
+use crate::study::{Ablated, Ending, Study};
+
+/// # Errors
+/// Nothing was left out.
+pub(super) fn draw(study: &Study) -> Drawn<String> {
+    let bars: Vec<Bar> = study.ablation.iter().map(bar).collect();
+    let lowest = bars.iter().map(|bar| bar.pieces[0].0).fold(0.0, f64::min);
+    let legend = [("in by default", MODEL), ("left out by default", LOADING)];
+    // Notes stand beyond the longest bar.
+    let extent = lowest.max(-100.0)..190.0;
+    bars::draw(
+        "What leaving out a part saves, and the error of that",
+        ("saved time [%]", extent),
+        &legend,
+        &bars,
+    )
+}
+
+fn bar(row: &Ablated) -> Bar {
+    let note = match (&row.ending[1], row.relative_error(), row.error_position_mm) {
+        (Ending::Failed(_), ..) => "fails".into(),
+        (_, Some(error), _) if error > 10.0 => "> 1000 %".into(),
+        (_, Some(error), _) => format!("{} %", digits(100.0 * error)),
+        (_, None, Some(millimetres)) => format!("{} mm", digits(millimetres)),
+        _ => String::new(),
+    };
+    Bar {
+        name: format!("{}, {}", row.scene, row.part),
+        pieces: vec![(100.0 * row.saving().max(-1.0), if row.by_default { MODEL } else { LOADING })],
+        note,
+    }
+}
+
+fn digits(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-2 { format!("{value:.0e}") } else { format!("{value:.2}") }
+}

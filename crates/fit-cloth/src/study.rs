@@ -1,0 +1,96 @@
+//! Error against run time, and what each part that a scene can leave out saves and costs.
+//!
+//! ```text
+//! known fabric ──▶ scenes on finer and finer meshes ──▶ error and cost of an equilibrium      [equilibria]
+//! measured set ──▶ fits: nodes, models, solvers, points, frames ──▶ error and cost of a fit   [fits]
+//! known fabric ──▶ more and more noise ──▶ error of a curve beside the least there can be     [noise]
+//!              ──▶ scenes with and without a part ──▶ what it saves, what it costs            [ablation]
+//! ```
+//!
+//! Runs are timed one at a time; within a run frames are solved in parallel, as in a fit. A run that fails is a row that
+//! says so.
+
+mod ablation;
+mod equilibria;
+mod extent;
+mod fits;
+mod memory;
+mod noise;
+mod own_mesh;
+mod page;
+mod pareto;
+mod physical;
+mod run;
+mod scene;
+mod solver;
+mod subject;
+mod table;
+
+pub use ablation::Ablated;
+pub use extent::{Extent, Topic};
+pub use noise::{Level, levels};
+pub use page::{Section, sections};
+pub use pareto::front;
+pub use run::{Ending, Part, Run, Spent};
+pub use solver::Solver;
+pub use subject::Subject;
+pub use table::{ablation_csv, markdown, study_csv, study_json};
+
+use crate::progress::Progress;
+use cloth_fit::error::Result;
+
+/// All that a study has found.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// The fabric whose set was fitted.
+    pub fabric: String,
+    /// What curve errors are measured against, in words.
+    pub reference: String,
+    /// One row a run.
+    pub runs: Vec<Run>,
+    /// One row a part and scene.
+    pub ablation: Vec<Ablated>,
+}
+
+impl Study {
+    /// Nodes a side of the finest grid on which fits were run by both solvers, or by one if there is none.
+    pub fn finest_fit(&self) -> Option<usize> {
+        let of = |solver| self.part(Part::Fit).filter(move |run| run.solver == solver).map(|run| run.nodes);
+        let both = of(Solver::AsPublished).filter(|nodes| of(Solver::Default).any(|other| other == *nodes));
+        both.max().or(of(Solver::Default).max())
+    }
+
+    /// The rows of one part.
+    pub fn part(&self, part: Part) -> impl Iterator<Item = &Run> {
+        self.runs.iter().filter(move |run| run.part == part)
+    }
+}
+
+/// Runs a whole study.
+///
+/// # Errors
+/// A set that not even the reference fit can be made of; scenes that the rig cannot make.
+pub fn run(subject: &Subject, extent: &Extent, progress: &Progress) -> Result<Study> {
+    let fabric = &subject.fabric;
+    let (mut runs, mut ablation, mut told) = (Vec::new(), Vec::new(), String::new());
+    if extent.has(Topic::Equilibria) {
+        runs.extend(equilibria::runs(fabric, extent, progress)?);
+    }
+    if extent.has(Topic::Noise) {
+        runs.extend(noise::runs(fabric, extent, progress)?);
+    }
+    if extent.has(Topic::Ablation) {
+        ablation.extend(ablation::scenes(fabric, extent, progress)?);
+    }
+    if extent.has(Topic::Fits) {
+        let reference;
+        (reference, told) = fits::reference(subject, extent, progress)?;
+        let fits = fits::runs(subject, &reference, extent, progress);
+        runs.extend(fits.iter().flat_map(|fit| fit.rows.iter().cloned()));
+        if extent.has(Topic::Ablation) {
+            ablation.extend(ablation::of_fits(subject, &reference, &fits, extent, progress));
+        }
+    }
+    Ok(Study { fabric: subject.set.fabric.name.clone(), reference: told, runs, ablation })
+}

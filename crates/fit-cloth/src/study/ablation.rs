@@ -1,0 +1,180 @@
+//! What each part that a scene can leave out saves, and which error it causes to leave it out.
+//!
+//! A scene is balanced with the part and without it, all frames of a test at the fabric's own curves. What concerns the fit
+//! rather than a scene is read off the fits of the study.
+
+mod of_fits;
+
+pub(super) use of_fits::of_fits;
+
+use super::extent::Extent;
+use super::physical::Reference;
+use super::run::{Ending, Spent};
+use super::scene::{Balanced, IN_SPACE, Scene, WEIGHT};
+use crate::progress::Progress;
+use cloth_fit::error::Result;
+use cloth_fit::frame::Kind;
+use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
+use cloth_sim::equilibrium::{self, Method};
+use cloth_sim::material::Component;
+use nalgebra::Vector3;
+
+/// Scenes are balanced so often, and the fastest counts.
+const REPEATS: usize = 3;
+
+/// One row of `ablation.csv`: a part, with and without it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ablated {
+    /// What is left out.
+    pub part: String,
+    /// Where.
+    pub scene: String,
+    /// A fit has it by default.
+    pub by_default: bool,
+    /// Cost with it.
+    pub with: Spent,
+    /// Cost without it.
+    pub without: Spent,
+    /// What leaving it out changes: largest change of a force, over the largest force.
+    pub error_force: Option<f64>,
+    /// Root mean square change of the nodes' places, mm.
+    pub error_position_mm: Option<f64>,
+    /// Root mean square change of a curve over its range, over the largest stress there.
+    pub error_curve: Option<f64>,
+    /// How the runs ended, with and without.
+    pub ending: [Ending; 2],
+}
+
+impl Ablated {
+    /// Share of the time that leaving it out saves; below zero if that costs time.
+    pub fn saving(&self) -> f64 {
+        1.0 - self.without.seconds / self.with.seconds.max(f64::MIN_POSITIVE)
+    }
+
+    /// The largest relative error that it causes to leave it out: of forces or of a curve.
+    pub fn relative_error(&self) -> Option<f64> {
+        self.error_force.into_iter().chain(self.error_curve).reduce(f64::max)
+    }
+}
+
+/// A scene with a part, and the same without it.
+struct Pair {
+    part: &'static str,
+    by_default: bool,
+    with: (Scene, equilibrium::Settings),
+    without: (Scene, equilibrium::Settings),
+}
+
+/// The parts of scenes.
+///
+/// # Errors
+/// A scene that the rig cannot make.
+pub(super) fn scenes(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Ablated>> {
+    let reference = Reference { model: fabric.model, curves: fabric.curves()? };
+    let nodes = extent.usual_nodes;
+    let rig = || Rig { nodes: [extent.rig_nodes; 2], measured: [25, 25], frames: 6, ..Rig::default() };
+    let strip = Scene::new(fabric, Kind::StretchWeft, rig(), stretch::plan(&[Component::StretchWeft]))?;
+    let frame = Scene::new(fabric, Kind::Shear, rig(), shear::plan(2))?;
+    let sheet = Scene::new(fabric, Kind::BendWarp, rig(), bend::plan(&[Component::BendWarp], 1))?;
+    let pairs = of_strip(&strip).into_iter().chain(of_frame(&frame)).chain(of_sheet(&sheet));
+    pairs
+        .map(|pair| {
+            progress.note(&format!("{}, {}", pair.part, pair.with.0.name));
+            pair.balance(&reference, nodes)
+        })
+        .collect()
+}
+
+fn pair(part: &'static str, by_default: bool, with: Scene, without: Scene) -> Pair {
+    let settings = equilibrium::Settings::default();
+    Pair { part, by_default, with: (with, settings), without: (without, settings) }
+}
+
+/// A scene with more or other components.
+fn of(scene: &Scene, components: &[Component]) -> Scene {
+    let plan = Plan { components: components.to_vec(), ..scene.plan.clone() };
+    Scene { plan, ..scene.clone() }
+}
+
+/// The strip of the stretch stage: none of these takes part in it by default.
+fn of_strip(strip: &Scene) -> Vec<Pair> {
+    let bends = [Component::BendWeft, Component::BendWarp, Component::BendDiagonal];
+    let stretches = [Component::StretchWeft, Component::StretchWarp];
+    let all_but_shear = [&stretches[..], &bends].concat();
+    let in_space = || strip.clone().with_gravity(IN_SPACE);
+    let heavy = of(strip, &all_but_shear).with_gravity(WEIGHT).without_shapes();
+    vec![
+        pair("out-of-plane unknowns", false, in_space(), strip.clone()),
+        pair("bending", false, of(strip, &all_but_shear).with_gravity(IN_SPACE), in_space()),
+        pair("shear", false, of(strip, &[stretches[0], stretches[1], Component::Shear]), strip.clone()),
+        pair("weight, and what it needs", false, heavy, strip.clone()),
+    ]
+}
+
+/// The picture frame of the second pass over shear.
+fn of_frame(frame: &Scene) -> Vec<Pair> {
+    let flat = Scene { plan: Plan { kinds: frame.plan.kinds.clone(), ..shear::plan(1) }, ..frame.clone() };
+    let settings = equilibrium::Settings::default();
+    let trusting = equilibrium::Settings { escape: false, ..settings };
+    vec![
+        pair("bending, and leaving the plane", true, frame.clone(), flat),
+        solved("leaving unstable states, from flat", &frame.clone().without_shapes(), trusting),
+        solved("mixed Newton", frame, damped()),
+    ]
+}
+
+/// The sheet off a table of the stages of bending.
+fn of_sheet(sheet: &Scene) -> Vec<Pair> {
+    let without_shear: Vec<Component> =
+        sheet.plan.components.iter().copied().filter(|component| *component != Component::Shear).collect();
+    vec![
+        pair("shear", true, sheet.clone(), of(sheet, &without_shear)),
+        pair("weight", true, sheet.clone(), sheet.clone().with_gravity(Vector3::zeros())),
+        solved("mixed Newton", sheet, damped()),
+    ]
+}
+
+/// Levenberg–Marquardt instead, to the same tolerance.
+fn damped() -> equilibrium::Settings {
+    equilibrium::Settings { method: Method::LevenbergMarquardt, ..equilibrium::Settings::default() }
+}
+
+/// The same scene by other means.
+fn solved(part: &'static str, scene: &Scene, without: equilibrium::Settings) -> Pair {
+    let with = equilibrium::Settings::default();
+    Pair { part, by_default: true, with: (scene.clone(), with), without: (scene.clone(), without) }
+}
+
+impl Pair {
+    fn balance(&self, reference: &Reference, nodes: usize) -> Result<Ablated> {
+        let [with, without] = [&self.with, &self.without].map(|(scene, equilibrium)| {
+            let settings =
+                Settings { nodes: Some([nodes; 2]), equilibrium: *equilibrium, ..Settings::default() };
+            fastest(|| scene.balance(reference, &settings))
+        });
+        let (with, without) = (with?, without?);
+        Ok(Ablated {
+            part: self.part.into(),
+            scene: self.with.0.name.clone(),
+            by_default: self.by_default,
+            error_force: without.force_error(&with),
+            error_position_mm: without.position_error_mm(&with, nodes),
+            error_curve: None,
+            with: with.spent,
+            without: without.spent,
+            ending: [with.ending, without.ending],
+        })
+    }
+}
+
+fn fastest(mut run: impl FnMut() -> Result<Balanced>) -> Result<Balanced> {
+    let mut best = run()?;
+    for _ in 1..REPEATS {
+        let again = run()?;
+        if again.spent.seconds < best.spent.seconds {
+            best = again;
+        }
+    }
+    Ok(best)
+}

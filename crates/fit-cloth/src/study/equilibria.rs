@@ -1,0 +1,199 @@
+//! Equilibria of representative scenes on finer and finer meshes: what an error costs, and how fast it falls.
+//!
+//! A strip pulled in its plane and a flat picture frame are homogeneous, so every mesh meets them exactly. These are not:
+//!
+//! ```text
+//! sagging strip    ▌‾‾╲__╱‾‾▐    pulled by 1 % between two bars, in space, under its weight
+//! picture frame    sheared a little, in space, under its weight: below or just above where it buckles
+//! cantilever       pushed off a table along warp
+//! bars in shear    ▌  ▐          two bars moved along each other, in the plane: the corners are singular
+//! ```
+
+use super::extent::Extent;
+use super::physical::Reference;
+use super::run::{Part, Run};
+use super::scene::{Balanced, Scene, WEIGHT, root_mean_square_distance};
+use super::solver::Solver;
+use crate::progress::Progress;
+use cloth_fit::error::Result;
+use cloth_fit::frame::Kind;
+use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
+use cloth_sim::equilibrium::Tolerance;
+use cloth_sim::material::{Component, Model};
+
+/// Runs that take less than this, s, are repeated, and the fastest counts.
+const SHORT: f64 = 0.05;
+const REPEATS: usize = 3;
+
+/// Most iterations of one minimisation: far more than any of these needs that ends.
+const ITERATIONS: usize = 100;
+
+/// The tolerances that are tried beside the usual one.
+const TOLERANCES: [Tolerance; 5] = [
+    Tolerance::Relative(1e-2),
+    Tolerance::Relative(1e-4),
+    Tolerance::Relative(1e-6),
+    Tolerance::Relative(1e-8),
+    Tolerance::Absolute(1e-5),
+];
+
+/// All equilibria of a study.
+///
+/// # Errors
+/// A scene that the rig cannot make; a reference mesh that no scene can be laid on.
+pub(super) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Run>> {
+    let reference = Reference { model: fabric.model, curves: fabric.curves()? };
+    let mut runs = Vec::new();
+    for scene in scenes(fabric, extent)? {
+        for &model in extent.models.iter().filter(|&&model| suits(&scene, model)) {
+            progress.note(&format!("{}, {model}: {1}x{1}", scene.name, extent.finest));
+            let settings = settings(model, Solver::Default, extent.finest, None);
+            let finest = scene.balance(&reference, &settings)?;
+            let ladder = Ladder { scene: &scene, reference: &reference, model, finest };
+            runs.extend(ladder.meshes(extent, progress)?);
+            if model == Model::Stvk {
+                runs.extend(ladder.tolerances(extent)?);
+            }
+        }
+    }
+    Ok(runs)
+}
+
+/// Springs do not resist the first bend: pressed together as in a picture frame, their sheet has no shape to converge to.
+fn suits(scene: &Scene, model: Model) -> bool {
+    model != Model::Springs || scene.set.sequences[0].kind != Kind::Shear
+}
+
+fn settings(model: Model, solver: Solver, nodes: usize, tolerance: Option<Tolerance>) -> Settings {
+    // The scene is the same for both: only how its equilibrium is found differs.
+    let equilibrium = solver.equilibrium();
+    let mut settings = Settings { model, nodes: Some([nodes; 2]), equilibrium, ..Settings::default() };
+    settings.equilibrium.max_iterations = ITERATIONS;
+    settings.equilibrium.tolerance = tolerance.unwrap_or(settings.equilibrium.tolerance);
+    settings
+}
+
+/// The scenes, each with one frame.
+fn scenes(fabric: &KnownFabric, extent: &Extent) -> Result<[Scene; 4]> {
+    let with = |plan: Plan, components: &[Component]| Plan { components: components.to_vec(), ..plan };
+    let mut gentle = fabric.clone();
+    gentle.largest_extension.stretch_weft = 0.01;
+    gentle.largest_shear_rad = 0.01;
+    gentle.complex_shear_m = 0.05 * fabric.width_m;
+    let coarse = || Rig { nodes: [13, 13], measured: [5, 5], frames: 1, ..Rig::default() };
+    let fine = Rig { nodes: [extent.finest; 2], measured: [extent.finest; 2], frames: 1, ..Rig::default() };
+    let strip = with(
+        stretch::plan(&[Component::StretchWeft]),
+        &[
+            Component::StretchWeft,
+            Component::StretchWarp,
+            Component::BendWeft,
+            Component::BendWarp,
+            Component::BendDiagonal,
+        ],
+    );
+    let bars = Scene::new(&gentle, Kind::ComplexShear, coarse(), shear::plan(1))?;
+    Ok([
+        Scene::new(&gentle, Kind::StretchWeft, coarse(), strip)?
+            .with_gravity(WEIGHT)
+            .without_shapes()
+            .called("sagging strip"),
+        Scene::new(&gentle, Kind::Shear, coarse(), shear::plan(2))?.without_shapes().called("picture frame"),
+        Scene::new(fabric, Kind::BendWarp, fine, bend::plan(&[Component::BendWarp], 1))?.called("cantilever"),
+        bars.without_shapes().called("bars in shear"),
+    ])
+}
+
+/// One scene and model, from coarse to fine.
+struct Ladder<'a> {
+    scene: &'a Scene,
+    reference: &'a Reference,
+    model: Model,
+    finest: Balanced,
+}
+
+impl Ladder<'_> {
+    fn meshes(&self, extent: &Extent, progress: &Progress) -> Result<Vec<Run>> {
+        let mut runs = Vec::new();
+        let coarsest = extent.meshes[0];
+        for solver in Solver::ALL {
+            let mut shapes: Vec<Option<Vec<f64>>> = Vec::new();
+            for &nodes in &extent.meshes {
+                progress.note(&format!("{}, {}, {solver}: {nodes}x{nodes}", self.scene.name, self.model));
+                let (mut run, balanced) = self.run(solver, nodes, None, coarsest)?;
+                shapes.push((!run.failed()).then(|| balanced.shared(coarsest)));
+                run.order = order(&shapes);
+                runs.push(run);
+            }
+            if solver == Solver::Default {
+                runs.push(self.finest(extent, shapes));
+            }
+        }
+        Ok(runs)
+    }
+
+    /// The mesh that all are compared with: it has an order, and no error.
+    fn finest(&self, extent: &Extent, mut shapes: Vec<Option<Vec<f64>>>) -> Run {
+        let mut run =
+            Run::new(Part::Equilibrium, &self.scene.name, self.model, Solver::Default, extent.finest);
+        run.frames = self.finest.frames.len();
+        run.spent = self.finest.spent;
+        run.ending = self.finest.ending.clone();
+        shapes.push((!run.failed()).then(|| self.finest.shared(extent.meshes[0])));
+        run.order = order(&shapes);
+        run
+    }
+
+    fn tolerances(&self, extent: &Extent) -> Result<Vec<Run>> {
+        let solvers = Solver::ALL.into_iter();
+        let pairs = solvers.flat_map(|solver| TOLERANCES.map(|tolerance| (solver, tolerance)));
+        // What was run on all meshes is not run again.
+        let new = pairs.filter(|(solver, tolerance)| *tolerance != solver.equilibrium().tolerance);
+        let run = |(solver, tolerance)| {
+            self.run(solver, extent.tolerances_on, Some(tolerance), extent.meshes[0]).map(|(run, _)| run)
+        };
+        new.map(run).collect()
+    }
+
+    fn run(
+        &self,
+        solver: Solver,
+        nodes: usize,
+        tolerance: Option<Tolerance>,
+        shared: usize,
+    ) -> Result<(Run, Balanced)> {
+        let settings = settings(self.model, solver, nodes, tolerance);
+        let solve = || self.scene.balance(self.reference, &settings);
+        let mut balanced = solve()?;
+        if balanced.spent.seconds < SHORT {
+            for _ in 1..REPEATS {
+                let again = solve()?;
+                if again.spent.seconds < balanced.spent.seconds {
+                    balanced = again;
+                }
+            }
+        }
+        let mut run = Run::new(Part::Equilibrium, &self.scene.name, self.model, solver, nodes);
+        run.tolerance = settings.equilibrium.tolerance;
+        run.frames = balanced.frames.len();
+        run.spent = balanced.spent;
+        run.ending = balanced.ending.clone();
+        if !run.failed() {
+            run.error_force = balanced.force_error(&self.finest);
+            run.error_position_mm = balanced.position_error_mm(&self.finest, shared);
+        }
+        Ok((run, balanced))
+    }
+}
+
+/// The order of convergence that the last three meshes show, each with twice the cells of the one before: the change from
+/// the first to the second over that from the second to the third is 2 to the order. It needs no exact answer.
+fn order(shapes: &[Option<Vec<f64>>]) -> Option<f64> {
+    let [.., Some(first), Some(second), Some(third)] = shapes else { return None };
+    let [before, after] =
+        [root_mean_square_distance(first, second), root_mean_square_distance(second, third)];
+    // Changes of rounding have no order.
+    let size = third.iter().fold(0.0f64, |largest, place| largest.max(place.abs()));
+    (after > 1e-10 * size).then(|| (before / after).log2()).filter(|order| order.is_finite())
+}

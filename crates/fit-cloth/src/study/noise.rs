@@ -1,0 +1,219 @@
+//! How near a fit comes to the least error that its measurements allow.
+//!
+//! ```text
+//! own mesh      curve that the fit can represent ──▶ its own simulation ──▶ + noise ──▶ fit     only noise errs
+//! finer mesh    the fabric's curve ──▶ the rig's simulation             ──▶ + noise ──▶ fit     and mesh and control points
+//! floor         root mean square over the range of √(wᵀ (JᵀJ/σ²)⁻¹ w), w = ∂stress/∂k           Cramér and Rao
+//! ```
+//!
+//! The floor is that of the noise alone, at the true curve. All control points are in use, so that bias and variance are
+//! not mixed.
+
+use super::Study;
+use super::extent::Extent;
+use super::own_mesh;
+use super::physical::{Reference, distance, loads};
+use super::run::{Ending, Part, Run, root_mean_square, spend};
+use super::scene::Scene;
+use super::solver::Solver;
+use crate::progress::Progress;
+use cloth_fit::error::Result;
+use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_fit::knowledge::Knowledge;
+use cloth_fit::refine::GrowthRule;
+use cloth_fit::report::StageReport;
+use cloth_fit::rig::{KnownFabric, Rig, with_noise};
+use cloth_fit::stage::{self, Plan, Settings, Watch, bend, stretch};
+use cloth_sim::material::{Component, Curves, Model};
+
+/// Standard deviations from the middle of a 95 % band to its edge.
+const BAND: f64 = 1.959_963_985;
+
+/// The share that more control points must gain: less than none, so that all are used.
+const ALWAYS: f64 = -1e6;
+
+/// All seeds of one noise together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// Curve and mesh.
+    pub test: String,
+    /// Multiple of the instruments' noise.
+    pub noise: f64,
+    /// Seeds whose fits converged.
+    pub seeds: usize,
+    /// Seeds whose fits did not.
+    pub failed: usize,
+    /// Root mean square of their curve errors.
+    pub error: f64,
+    /// The Cramér–Rao bound.
+    pub floor: Option<f64>,
+}
+
+/// The fits to noise, averaged over seeds.
+pub fn levels(study: &Study) -> Vec<Level> {
+    let mut levels: Vec<Level> = Vec::new();
+    let runs: Vec<&Run> = study.part(Part::Noise).collect();
+    for group in runs.chunk_by(|a, b| a.test == b.test && a.noise == b.noise) {
+        let done = group.iter().filter(|run| !run.failed() && run.error_curve.is_some());
+        let seeds = done.clone().count();
+        levels.extend(root_mean_square(done.filter_map(|run| run.error_curve)).map(|error| Level {
+            test: group[0].test.clone(),
+            noise: group[0].noise.unwrap_or(0.0),
+            seeds,
+            failed: group.len() - seeds,
+            error,
+            floor: group[0].floor,
+        }));
+    }
+    levels
+}
+
+/// One stage of a fit, its scene, and what it compares its curve with.
+struct Stage {
+    plan: Plan,
+    scene: Scene,
+    settings: Settings,
+    /// The other curves.
+    known: Knowledge,
+    reference: Reference,
+    largest_noise: f64,
+}
+
+/// Ten times the noise of a vertex is 0.75 mm: above that a stiff sheet that hardly sags has no shape left.
+const LARGEST_IN_BENDING: f64 = 10.0;
+
+/// All fits to noise of a study: averages are left to who reads them.
+///
+/// # Errors
+/// A scene that the rig cannot make, or a stage that fails without noise.
+pub(super) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Run>> {
+    let mut runs = Vec::new();
+    for (component, points) in [(Component::StretchWeft, 5), (Component::BendWeft, 2)] {
+        let mut stage = Stage::new(fabric, component, points, extent)?;
+        // What the fit makes of the fabric is a curve that it can represent.
+        progress.note(&format!("{component}, without noise"));
+        let own = stage.fit(&stage.scene.set)?;
+        let fine = stage.scene.set.clone();
+        let finer = stage.reference.clone();
+        stage.reference.curves.set(component, own.curve.curve.clone());
+        let exact = own_mesh::simulated(&stage.scene, &stage.reference, &stage.settings)?;
+        let told = with_noise(&exact, 0.0, 1.0, 1);
+        let floor = floor(&stage.fit(&told)?);
+        runs.extend(stage.series("own mesh", component, &exact, floor, extent, progress));
+        stage.reference = finer;
+        runs.extend(stage.series("finer mesh", component, &fine, floor, extent, progress));
+    }
+    Ok(runs)
+}
+
+/// The Cramér–Rao floor at the instruments' noise, over the largest stress of the range, from a fit to exact data that is
+/// told of that noise: its bands then are of noise alone.
+fn floor(stage: &StageReport) -> Option<f64> {
+    let samples = &stage.curve.samples;
+    let largest = samples.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
+    let square = |sample: &cloth_fit::report::Sample| {
+        sample.band.map(|[_, high]| ((high - sample.stress) / BAND).powi(2))
+    };
+    let sum = samples.iter().map(square).sum::<Option<f64>>()?;
+    (largest > 0.0).then(|| (sum / samples.len() as f64).sqrt() / largest)
+}
+
+impl Stage {
+    fn new(fabric: &KnownFabric, component: Component, points: usize, extent: &Extent) -> Result<Self> {
+        let nodes = extent.noise_nodes;
+        let (kind, plan) = match component.is_bending() {
+            true => (Kind::BendWeft, bend::plan(&[component], 1)),
+            false => (Kind::StretchWeft, stretch::plan(&[component])),
+        };
+        let rig = Rig {
+            nodes: [extent.rig_nodes; 2],
+            // Shapes are seen at the fit's own nodes.
+            measured: [nodes; 2],
+            frames: 6,
+            ..Rig::default()
+        };
+        let settings = Settings {
+            model: Model::Stvk,
+            nodes: Some([nodes; 2]),
+            points,
+            growth: GrowthRule { gain: ALWAYS, ..GrowthRule::default() },
+            ..Settings::default()
+        };
+        let curves = fabric.curves()?;
+        let others = curves.components().filter(|&other| other != component);
+        let others: Curves = others.filter_map(|other| Some((other, curves.get(other)?.clone()))).collect();
+        Ok(Self {
+            scene: Scene::new(fabric, kind, rig, plan.clone())?,
+            plan,
+            settings,
+            known: Knowledge::exact(others),
+            reference: Reference { model: fabric.model, curves },
+            largest_noise: if component.is_bending() { LARGEST_IN_BENDING } else { f64::INFINITY },
+        })
+    }
+
+    fn fit(&self, set: &MeasurementSet) -> Result<StageReport> {
+        let mut known = self.known.clone();
+        let found = stage::fit(set, &self.plan, &mut known, &self.settings, &mut Watch::default())?;
+        found.ok_or_else(|| cloth_fit::error::Error::Geometry {
+            sequence: self.scene.name.clone(),
+            found: "nothing to fit".into(),
+            expected: "a sequence that shows the curve".into(),
+        })
+    }
+
+    /// Every noise and seed on one exact set.
+    fn series(
+        &self,
+        mesh: &str,
+        component: Component,
+        exact: &MeasurementSet,
+        floor: Option<f64>,
+        extent: &Extent,
+        progress: &Progress,
+    ) -> Vec<Run> {
+        let name = format!("{component}, {mesh}");
+        // Every noise has seeds of its own: the same draws, only larger, would err alike.
+        let levels = extent.noises.iter().filter(|&&noise| noise <= self.largest_noise).enumerate();
+        let pairs = levels.flat_map(|(level, &noise)| {
+            (1..=extent.seeds).map(move |seed| (noise, 1000 * level as u64 + seed))
+        });
+        pairs
+            .map(|(noise, seed)| {
+                progress.note(&format!("{name}: noise x {noise}, seed {seed}"));
+                let set = with_noise(exact, noise, noise, seed);
+                Run {
+                    points: Some(self.settings.points),
+                    noise: Some(noise),
+                    seed: Some(seed),
+                    floor: floor.map(|floor| floor * noise),
+                    ..self.run(&name, component, &set, progress)
+                }
+            })
+            .collect()
+    }
+
+    fn run(&self, name: &str, component: Component, set: &MeasurementSet, progress: &Progress) -> Run {
+        let nodes = self.settings.nodes.map_or(0, |[columns, _]| columns);
+        let mut run = Run::new(Part::Noise, name, self.settings.model, Solver::Default, nodes);
+        let mut known = self.known.clone();
+        let meter = progress.meter();
+        let mut watch = Watch { meter: meter.clone(), observe: Box::new(|_| ()) };
+        let (found, spent) =
+            spend(&meter, || stage::fit(set, &self.plan, &mut known, &self.settings, &mut watch));
+        run.spent = spent;
+        match found {
+            Ok(Some(stage)) => {
+                run.frames = stage.sequences.iter().map(|sequence| sequence.frames).sum();
+                let expected = |place| self.reference.load(component, place);
+                run.error_curve = distance(&loads(&stage), expected);
+                if !stage.converged {
+                    run.ending = Ending::Failed("not converged".into());
+                }
+            }
+            Ok(None) => run.ending = Ending::Failed("nothing to fit".into()),
+            Err(error) => run.ending = Ending::Failed(error.to_string()),
+        }
+        run
+    }
+}

@@ -1,0 +1,25 @@
+//! Error against noise.
+
+use super::{Section, digits, header, percent};
+use crate::study::Study;
+use crate::study::levels;
+
+pub(super) fn noise(study: &Study) -> Section {
+    let row = |level: &crate::study::Level| {
+        vec![
+            level.test.clone(),
+            level.noise.to_string(),
+            format!("{}/{}", level.seeds, level.seeds + level.failed),
+            percent(Some(level.error)),
+            percent(level.floor),
+            level.floor.map_or("-".into(), |floor| digits(level.error / floor)),
+        ]
+    };
+    Section {
+        title: "Curve error against noise".into(),
+        words: "The floor is the Cramér–Rao bound: no unbiased estimate of the control points can do better. On the fit's own mesh, with a curve that it can represent, only noise errs, and the ratio is that of the estimator; the constraints may take it below 1 where the noise is large. On a finer mesh, with the fabric's curve, mesh and control points err too: where the ratio grows, less noise no longer helps.".into(),
+        header: header(&["curve", "noise", "seeds", "error", "floor", "error / floor"]),
+        rows: levels(study).iter().map(row).collect(),
+        plot: Some("noise"),
+    }
+}

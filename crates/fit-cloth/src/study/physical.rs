@@ -1,0 +1,208 @@
+//! Curves in physical terms. The models' strains differ, so what is compared is what a laboratory would measure.
+//!
+//! ```text
+//! stretch   P(λ − 1)   force per rest width of a strip                P = λ σ(ε) (stvk), σ(ε) (others)
+//! shear     S(γ)       force along a bar per length, picture frame    S = σ(sin γ);  springs: below
+//! bending   M(κ)       moment per width of a rolled sheet             M = lever · σ(ε)
+//!
+//! springs   S cos γ = dW/dγ,   W = ½ W_c(ε₊) + ½ W_c(ε₋),   ε± = √(1 ± sin γ) − 1      both diagonals of square cells
+//! ```
+
+use cloth_fit::report::StageReport;
+use cloth_sim::bending::{Bending, HINGE_STRAIN_PER_CURVATURE, Rolled};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::error::Result;
+use cloth_sim::material::{Component, Compression, Curves, Model};
+use cloth_sim::mesh::Mesh;
+
+/// Curves over the strains of a model with triangles, against which others are measured.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Reference {
+    /// Whose strains: not those of springs.
+    pub(super) model: Model,
+    /// The curves.
+    pub(super) curves: Curves,
+}
+
+/// How a model's membrane strain and stress are what is measured.
+#[derive(Clone, Copy)]
+struct Measure {
+    model: Model,
+    component: Component,
+}
+
+impl Measure {
+    /// Relative change of length, or shear angle in rad, at a strain of zero or more.
+    fn place(self, strain: f64) -> f64 {
+        match (self.component.is_stretch(), self.model) {
+            (true, Model::Stvk) => (1.0 + 2.0 * strain).sqrt() - 1.0,
+            (true, _) => strain,
+            (false, Model::Springs) => ((1.0 + strain).powi(2) - 1.0).clamp(-1.0, 1.0).asin(),
+            (false, _) => strain.clamp(-1.0, 1.0).asin(),
+        }
+    }
+
+    fn strain(self, place: f64) -> f64 {
+        match (self.component.is_stretch(), self.model) {
+            (true, Model::Stvk) => 0.5 * ((1.0 + place).powi(2) - 1.0),
+            (true, _) => place,
+            (false, Model::Springs) => (1.0 + place.sin()).sqrt() - 1.0,
+            (false, _) => place.sin(),
+        }
+    }
+
+    /// Force per length at a place, N/m.
+    fn load(self, place: f64, stress: impl Fn(f64) -> f64) -> f64 {
+        match (self.component.is_stretch(), self.model) {
+            (true, Model::Stvk) => (1.0 + place) * stress(self.strain(place)),
+            (false, Model::Springs) => {
+                let along = |sine: f64| {
+                    let stretch = (1.0 + sine).sqrt();
+                    0.25 * stress(stretch - 1.0) / stretch
+                };
+                along(place.sin()) - along(-place.sin())
+            }
+            _ => stress(self.strain(place)),
+        }
+    }
+}
+
+impl Reference {
+    /// Force or moment per length at an extension, shear angle or curvature, N/m or N; `None` without a curve.
+    pub(super) fn load(&self, component: Component, place: f64) -> Option<f64> {
+        let curve = self.curves.get(component)?;
+        Some(if component.is_bending() {
+            curve.stress(HINGE_STRAIN_PER_CURVATURE * place)
+        } else {
+            Measure { model: self.model, component }.load(place, |strain| curve.stress(strain))
+        })
+    }
+
+    /// Root mean square distance of a stage's curve over the range that it has seen, over the largest load there; `None`
+    /// where there is nothing to compare it with.
+    pub(super) fn distance(&self, stage: &StageReport) -> Option<f64> {
+        distance(&loads(stage), |place| self.load(stage.components[0], place))
+    }
+
+    /// The same curves over another model's strains. Bending of springs has one stiffness, which gives the moment at half
+    /// of the curve's range: a curve that gave all of them would fall as 1/κ².
+    ///
+    /// # Errors
+    /// Control points that make no curve.
+    pub(super) fn told_in(&self, model: Model, mesh: &Mesh) -> Result<Curves> {
+        let known = self.curves.components().filter_map(|c| Some((c, self.curves.get(c)?)));
+        known
+            .map(|(component, curve)| Ok((component, self.curve_in(model, mesh, component, curve)?)))
+            .collect()
+    }
+
+    fn curve_in(
+        &self,
+        model: Model,
+        mesh: &Mesh,
+        component: Component,
+        curve: &StiffnessCurve,
+    ) -> Result<StiffnessCurve> {
+        let last = curve.strains()[curve.len() - 1];
+        if component.is_bending() {
+            if model != Model::Springs {
+                return Ok(curve.clone());
+            }
+            let curvature = f64::max(0.5 * last / HINGE_STRAIN_PER_CURVATURE, 1.0);
+            let moment = curve.stress(HINGE_STRAIN_PER_CURVATURE * curvature);
+            let rolled =
+                Bending::new(model, mesh, &[component])?.and_then(|bending| bending.rolled(component));
+            let stiffness = rolled
+                .map_or(0.0, |rolled: Rolled| moment / (rolled.lever(curvature) * rolled.strain(curvature)));
+            return StiffnessCurve::constant(
+                stiffness,
+                model.negative_strain(component, Compression::ZeroStrain),
+            );
+        }
+        if model == self.model {
+            return Ok(curve.clone());
+        }
+        let [own, other] = [self.model, model].map(|model| Measure { model, component });
+        let (mut strains, mut stiffnesses) = (Vec::new(), Vec::new());
+        for &strain in curve.strains() {
+            // At rest, as close to it: the stiffness there is a limit.
+            let place = own.place(strain.max(1e-6));
+            let load = own.load(place, |strain| curve.stress(strain));
+            // The load of a stiffness of one.
+            stiffnesses.push(load / other.load(place, |strain| strain));
+            strains.push(if strain == 0.0 { 0.0 } else { other.strain(place) });
+        }
+        StiffnessCurve::new(strains, stiffnesses, model.negative_strain(component, Compression::ZeroStrain))
+    }
+}
+
+/// Places and loads of a fitted curve, over the range that was seen.
+pub(super) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
+    let component = stage.components[0];
+    let samples = stage.curve.samples.iter().filter(|sample| sample.strain >= 0.0);
+    if component.is_bending() {
+        return samples.map(|sample| [sample.strain, sample.stress]).collect();
+    }
+    let measure = Measure { model: stage.model, component };
+    samples
+        .map(|sample| {
+            let place = measure.place(sample.strain);
+            [place, measure.load(place, |strain| stage.curve.curve.stress(strain))]
+        })
+        .collect()
+}
+
+/// Root mean square distance of loads from others at the same places, over the largest of these.
+pub(super) fn distance(loads: &[[f64; 2]], reference: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    let (mut sum, mut largest) = (0.0, 0.0f64);
+    for &[place, load] in loads {
+        let expected = reference(place)?;
+        sum += (load - expected).powi(2);
+        largest = largest.max(expected.abs());
+    }
+    (largest > 0.0).then(|| (sum / loads.len() as f64).sqrt() / largest)
+}
+
+/// How far one stage's curve is from another's of the same component and model.
+pub(super) fn between(stage: &StageReport, other: &StageReport) -> Option<f64> {
+    let others = loads(other);
+    distance(&loads(stage), |place| Some(interpolated(&others, place)))
+}
+
+/// On the line through the two neighbours of a place; beyond the ends on the outermost.
+fn interpolated(loads: &[[f64; 2]], place: f64) -> f64 {
+    let after = loads.partition_point(|[at, _]| *at < place).clamp(1, loads.len() - 1);
+    let [[from, low], [to, high]] = [loads[after - 1], loads[after]];
+    low + (high - low) * (place - from) / (to - from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::mesh::{Diagonals, Grid};
+
+    #[test]
+    fn a_curve_told_in_another_model_makes_the_same_loads() {
+        let curve = |k: f64, component| {
+            let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+            StiffnessCurve::new(vec![0.0, 0.05, 0.1], vec![k, 1.3 * k, 2.0 * k], negative).unwrap()
+        };
+        let pairs = [(Component::StretchWeft, 400.0), (Component::Shear, 90.0)];
+        let curves = pairs.map(|(component, k)| (component, curve(k, component)));
+        let reference = Reference { model: Model::Stvk, curves: curves.into_iter().collect() };
+        let grid = Grid { columns: 5, rows: 5, width: 0.1, height: 0.1, diagonals: Diagonals::Alternating };
+        for model in [Model::SoftConstraint, Model::Springs] {
+            let told = reference.told_in(model, &grid.mesh().unwrap()).unwrap();
+            for component in [Component::StretchWeft, Component::Shear] {
+                let curve = told.get(component).unwrap();
+                let measure = Measure { model, component };
+                for place in [0.02, 0.06, 0.09] {
+                    let load = measure.load(place, |strain| curve.stress(strain));
+                    let expected = reference.load(component, place).unwrap();
+                    assert!((load / expected - 1.0).abs() < 0.02, "{model} {component}: {load} {expected}");
+                    assert!((measure.place(measure.strain(place)) - place).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
