@@ -86,7 +86,7 @@ impl Extent {
             meshes: vec![13, 25, 49, 97],
             finest: 193,
             fit_nodes: vec![13, 25, 49],
-            published_nodes: vec![13, 25],
+            published_nodes: vec![13],
             usual_nodes: 25,
             seeds: 20,
             noise_nodes: 25,
