@@ -35,6 +35,9 @@ pub struct StudyOptions {
     /// Coarser meshes and fewer runs
     #[arg(long)]
     pub quick: bool,
+    /// Fit by the published method on every grid, not on the coarsest alone: it takes ten times as long or more
+    #[arg(long)]
+    pub as_published: bool,
     /// What to study [default: all]
     #[arg(long, value_delimiter = ',', value_enum, hide_default_value = true, default_values_t = Topic::ALL)]
     pub topics: Vec<Topic>,
@@ -49,7 +52,11 @@ pub struct StudyOptions {
 /// Bad input, or an output folder that is no former result; what the operating system refuses.
 pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let extent = if options.quick { Extent::quick() } else { Extent::full() };
-    let extent = Extent { topics: options.topics.clone(), ..extent };
+    let published_nodes = match options.as_published {
+        true => extent.fit_nodes.clone(),
+        false => extent.published_nodes,
+    };
+    let extent = Extent { topics: options.topics.clone(), published_nodes, ..extent };
     let progress = Progress::new("study", !telling.quiet);
     let (subject, folder) = options.subject(&extent)?;
     let study = study::run(&subject, &extent, &progress);
