@@ -1,6 +1,7 @@
-//! Error against wall time, a line a model and solver; what failed stands as crosses along the top.
+//! Error against wall time, a line a model and solver; what failed stands as crosses, along the top where
+//! it has no error.
 
-use super::{Drawn, UNLOADING, decades, dot};
+use super::{Drawn, decades, dot};
 use crate::plot::chart::{Axes, log_figure};
 use crate::study::{Part, Run, Solver, Study, front};
 use cloth_sim::material::Model;
@@ -42,15 +43,14 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
     let errors =
         decades(runs.iter().filter_map(|run| point(run)).map(|(_, error)| error)).ok_or("no errors")?;
     // Room for the legend and for what failed.
-    let (times, errors) = (times.start..times.end * 30.0, errors.start..errors.end * 2.0);
+    let (times, errors) = (times.start..times.end * 100.0, errors.start..errors.end * 2.0);
     let top = errors.end / 1.4;
     let done: Vec<&&Run> = runs.iter().filter(|run| !run.failed() && point(run).is_some()).collect();
     let best: Vec<[f64; 2]> = done.iter().filter_map(|run| point(run)).map(<[f64; 2]>::from).collect();
-    let failed: Vec<(f64, f64)> = runs
-        .iter()
-        .filter(|run| run.failed())
-        .map(|run| point(run).unwrap_or((run.spent.seconds, top)))
-        .collect();
+    let failed = |model: Model| -> Vec<(f64, f64)> {
+        let own = runs.iter().filter(|run| run.failed() && run.model == model);
+        own.map(|run| point(run).unwrap_or((run.spent.seconds, top))).collect()
+    };
     let axes = Axes { title, x: ("wall time [s]", times), y: (y, errors) };
     log_figure(axes, |chart| {
         let front = front(&best).into_iter().map(|[seconds, error]| (seconds, error));
@@ -67,6 +67,10 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
                 chart.dots(points.iter().copied(), (size, style), &format!("{model}, {solver}"))?;
             }
         }
-        if failed.is_empty() { Ok(()) } else { chart.crosses(failed, UNLOADING.stroke_width(4), "failed") }
+        for model in Model::ALL.into_iter().filter(|&model| !failed(model).is_empty()) {
+            let style = super::colour(model).stroke_width(4);
+            chart.crosses(failed(model), style, &format!("{model}, failed"))?;
+        }
+        Ok(())
     })
 }
