@@ -15,6 +15,9 @@ pub(super) type Drawn<T> = Result<T, Box<dyn Error>>;
 
 type Context<'a, 'b, X> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, X>>;
 
+/// How the numbers along an axis are told.
+type Label<'l> = &'l dyn Fn(&f64) -> String;
+
 /// Axes with their names and extents.
 pub(super) struct Axes<'t> {
     pub(super) title: &'t str,
@@ -36,7 +39,7 @@ pub(super) fn figure(axes: Axes<'_>, series: impl FnOnce(&mut Chart<'_, '_>) -> 
     let largest = axes.y.1.start.abs().max(axes.y.1.end.abs());
     // Moments are small numbers.
     let small = |value: &f64| if *value == 0.0 { "0".into() } else { format!("{value:.1e}") };
-    let label: Option<&dyn Fn(&f64) -> String> = if largest < 1e-2 { Some(&small) } else { None };
+    let label: Option<Label<'_>> = if largest < 1e-2 { Some(&small) } else { None };
     let (x, y) = (axes.x.1.clone(), axes.y.1.clone());
     draw(&axes, [x, y], [None, label], SeriesLabelPosition::UpperLeft, series)
 }
@@ -64,7 +67,7 @@ pub(super) fn log_figure(
 fn draw<X, R>(
     axes: &Axes<'_>,
     extents: [R; 2],
-    labels: [Option<&dyn Fn(&f64) -> String>; 2],
+    labels: [Option<Label<'_>>; 2],
     legend: SeriesLabelPosition,
     series: impl FnOnce(&mut Chart<'_, '_, X>) -> Drawn<()>,
 ) -> Drawn<String>
@@ -93,7 +96,7 @@ where
 }
 
 impl<'a, 'b: 'a, X: Ranged<ValueType = f64> + ValueFormatter<f64>> Chart<'a, 'b, X> {
-    fn mesh(&mut self, names: [&str; 2], labels: [Option<&dyn Fn(&f64) -> String>; 2]) -> Drawn<()> {
+    fn mesh(&mut self, names: [&str; 2], labels: [Option<Label<'_>>; 2]) -> Drawn<()> {
         let mut mesh = self.0.configure_mesh();
         mesh.x_desc(names[0]).y_desc(names[1]).light_line_style(WHITE).label_style(("sans-serif", 28));
         if let Some(label) = labels[0] {

@@ -48,7 +48,7 @@ pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
             if points.is_empty() {
                 continue;
             }
-            let order = own().filter_map(|run| run.order).last();
+            let order = own().filter_map(|run| run.order).next_back();
             let label = order.map_or(scene.clone(), |order| format!("{scene}: order {order:.1}"));
             chart.path(points.iter().copied(), colour)?;
             chart.dots(points.iter().copied(), (8, colour.filled()), &label)?;

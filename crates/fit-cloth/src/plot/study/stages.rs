@@ -7,7 +7,9 @@ use cloth_sim::material::Model;
 use plotters::style::RGBColor;
 
 /// A kind of stage, its colour, and which stages it is.
-const KINDS: [(&str, RGBColor, fn(&str) -> bool); 4] = [
+type Kind = (&'static str, RGBColor, fn(&str) -> bool);
+
+const KINDS: [Kind; 4] = [
     ("stretch", MODEL, |stage| stage.starts_with("stretch")),
     ("shear", LOADING, |stage| stage == "shear"),
     ("bending", THIRD, |stage| stage.starts_with("bend") && !stage.ends_with("again")),

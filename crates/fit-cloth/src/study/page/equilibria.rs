@@ -35,7 +35,7 @@ pub(super) fn meshes(study: &Study) -> Section {
         let orders: Vec<&Run> = usual(study)
             .filter(|r| r.test == test && r.model == model && r.solver == Solver::Default)
             .collect();
-        let order = orders.iter().filter_map(|run| run.order).last();
+        let order = orders.iter().filter_map(|run| run.order).next_back();
         let cost = |run: Option<&Run>| match run {
             Some(run) if run.failed() => run.ending.to_string(),
             Some(run) => format!("{} s, {}", digits(run.spent.seconds), run.spent.counters.factorisations),
