@@ -34,6 +34,7 @@ pub fn study_json(study: &Study) -> Value {
 fn object(columns: &str, cells: Vec<String>) -> Value {
     let value = |cell: String| match (cell.parse::<f64>(), cell.parse::<bool>()) {
         _ if cell.is_empty() => Value::Null,
+        _ if cell.parse::<u64>().is_ok() => json!(cell.parse::<u64>().unwrap_or_default()),
         (Ok(number), _) => json!(number),
         (_, Ok(truth)) => json!(truth),
         _ => Value::String(cell.trim_matches('"').replace("\"\"", "\"")),

@@ -14,7 +14,7 @@ pub(super) fn draw(study: &Study) -> Drawn<String> {
     let extent = lowest.max(-100.0)..190.0;
     bars::draw(
         "What leaving out a part saves, and the error of that",
-        ("saved time [%]", extent),
+        ("saved time [%], cut at -100", extent),
         &legend,
         &bars,
     )
@@ -35,6 +35,11 @@ fn bar(row: &Ablated) -> Bar {
     }
 }
 
+/// What rounding leaves is nothing.
 fn digits(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-2 { format!("{value:.0e}") } else { format!("{value:.2}") }
+    match value.abs() {
+        size if size < 1e-9 => "0".into(),
+        size if size < 1e-2 => format!("{value:.0e}"),
+        _ => format!("{value:.2}"),
+    }
 }
