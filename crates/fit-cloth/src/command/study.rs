@@ -17,7 +17,7 @@ const EXAMPLE: &str = "\
 Example:
   fit-cloth study --quick --topics noise,ablation fixtures/cotton-denim --out out/study
 
-With all topics --quick takes one or two minutes, and the full study about half an hour.
+With all topics --quick takes about a minute, and the full study about ten.
 
 Writes study.md, study.csv (one row a run), ablation.csv (one row a part) and plots/*.svg. Errors are against the known
 curves where the set's fabric is one of the virtual rig's, else against the default fit on the finest grid. Times are of

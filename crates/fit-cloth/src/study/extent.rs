@@ -80,7 +80,7 @@ impl Extent {
         self.topics.contains(&topic)
     }
 
-    /// About half an hour.
+    /// About ten minutes.
     pub fn full() -> Self {
         Self {
             meshes: vec![13, 25, 49, 97],
