@@ -16,6 +16,8 @@ use nalgebra::Vector3;
 
 mod drive;
 mod escape;
+mod levenberg_marquardt;
+mod newton;
 
 /// How equilibria are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,32 +130,11 @@ impl Equilibrium {
     }
 }
 
-/// An energy may rise by this many times |g·d| in a full step: the mixed matrix overshoots stretch on purpose and takes
-/// it back in the next step. A stiff cantilever (stretch : bending = 1e9) from flat needs 28 steps with 1e3, 92 with 20.
-const NONMONOTONE: f64 = 1e3;
-
-/// After so many steps the energy must fall in each: no cycling.
-const NONMONOTONE_STEPS: usize = 40;
-
 /// A stiffness below this share of the mean is one of rounding: the matrix is singular.
 const SINGULAR: f64 = 1e-14;
 
 /// So many unstable states in a row are left.
 const ESCAPES: usize = 6;
-
-/// A factor is used again while each step with it leaves less than this share of the imbalance. Warm cantilevers need 3.0
-/// factorisations with 0.5, 3.7 with 0.25; picture frames 5.0 and 6.0.
-const CHORD_CONTRACTION: f64 = 0.5;
-
-/// So many matrices that are not positive definite are clamped, element by element, which takes out the spurious stress of
-/// a poor start.
-const CLAMPED_STEPS: usize = 2;
-
-/// Further ones are damped, as where a sheet is about to buckle: clamping would stiffen the way into the buckle a
-/// hundredfold. μ, as a share of the mean of the diagonal, falls to a tenth from step to step, and below the least to
-/// nothing. Levenberg–Marquardt starts with it too.
-const DAMPING: f64 = 1e-3;
-const LEAST_DAMPING: f64 = 2e-6;
 
 /// The memory that finding equilibria of one cloth needs. One a thread.
 pub struct Solver<'a> {
@@ -301,23 +282,21 @@ impl<'a> Solver<'a> {
     fn balance(&mut self, x: &[f64], settings: &Settings) -> (f64, f64, Limit) {
         let cloth = self.cloth;
         let size = x.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-        let (mut rounding, mut typical): (f64, f64) = (0.0, 0.0);
-        let mut last = usize::MAX;
-        for &(coordinate, _) in cloth.free_coordinates() {
+        let (mut typical, mut last) = (0.0, usize::MAX);
+        // Nodes that move alike balance as one, whose errors are those of all.
+        self.forces.fill(0.0);
+        for &(coordinate, unknown) in cloth.free_coordinates() {
             let node = coordinate / 3;
-            if node == last {
-                continue;
+            self.forces[unknown] += self.scale.stiffness[node] * size + self.scale.magnitude[node];
+            if node != last {
+                typical += self.scale.magnitude[node].max(cloth.weight(node));
+                last = node;
             }
-            last = node;
-            typical += self.scale.magnitude[node].max(cloth.weight(node));
-            let error = self.scale.stiffness[node] * size + self.scale.magnitude[node];
-            rounding = rounding.max(100.0 * f64::EPSILON * error);
         }
+        let mut rounding = 100.0 * f64::EPSILON * self.forces.iter().fold(0.0, |a: f64, &b| a.max(b));
         cloth.collect(&self.gradient, &mut self.forces);
         let moving = self.forces.chunks_exact(if cloth.is_planar() { 2 } else { 3 });
         let nodes = moving.len() as f64;
-        // Nodes that move alike balance as one, whose forces are those of all.
-        rounding *= cloth.free_coordinates().len() as f64 / self.forces.len().max(1) as f64;
         let squares = moving.map(|force| force.iter().map(|f| f * f).sum::<f64>());
         let (largest, total) = squares.fold((0.0f64, 0.0), |(largest, total), s| (largest.max(s), total + s));
         let (imbalance, asked) = match settings.tolerance {
@@ -339,68 +318,6 @@ impl<'a> Solver<'a> {
         imbalance <= tolerance
     }
 
-    fn mixed_newton(
-        &mut self,
-        curves: &Curves,
-        x: &mut [f64],
-        settings: &Settings,
-        energy: &mut f64,
-        iterations: &mut usize,
-    ) -> Status {
-        while !self.is_balanced(x, settings) {
-            if *iterations >= settings.max_iterations {
-                return Status::IterationLimit;
-            }
-            if !self.factorise_newton(curves, x) {
-                return Status::Stalled;
-            }
-            let slope = self.direction();
-            let nonmonotone = *iterations < NONMONOTONE_STEPS;
-            *iterations += 1;
-            if !self.line_search(curves, x, energy, slope, nonmonotone) {
-                return Status::Stalled;
-            }
-            self.chord_steps(curves, x, settings, energy);
-        }
-        Status::Converged
-    }
-
-    /// Goes on with the last step's factor for as long as that pays: a solve and a gradient cost about a sixth of a new
-    /// factor.
-    fn chord_steps(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings, energy: &mut f64) {
-        while self.contraction < CHORD_CONTRACTION && !self.is_balanced(x, settings) {
-            let norm = self.cloth.norm(&self.gradient);
-            self.direction();
-            let trial_energy = self.try_step(curves, x, 1.0);
-            let contraction = self.cloth.norm(&self.trial_gradient) / norm;
-            if !(contraction < CHORD_CONTRACTION) || self.cloth.hinge_jumps(x, &self.trial) {
-                return;
-            }
-            *energy = self.accept(x, trial_energy);
-        }
-    }
-
-    /// The mixed matrix; where it is not positive definite, the damped one; where that is not either, the clamped one.
-    fn factorise_newton(&mut self, curves: &Curves, x: &[f64]) -> bool {
-        let mixed = if self.mixed.is_empty() { Curvature::Full } else { Curvature::Mixed(&self.mixed) };
-        self.cloth.hessian(curves, x, mixed, &mut self.values);
-        let mean = self.mean_diagonal();
-        if self.factorise(self.damping * mean) {
-            self.damping = if self.damping > LEAST_DAMPING { 0.1 * self.damping } else { 0.0 };
-            return true;
-        }
-        self.clamped += 1;
-        if self.damping < DAMPING && self.clamped > CLAMPED_STEPS {
-            self.damping = DAMPING;
-            if self.factorise(DAMPING * mean) {
-                return true;
-            }
-        }
-        self.cloth.hessian(curves, x, Curvature::Clamped, &mut self.values);
-        // A clamped matrix may still be singular, as where nothing but bending holds a flat sheet.
-        self.factorise(0.0) || self.factorise_shifted()
-    }
-
     /// True if the state is stable: no stiffness is negative, or zero up to rounding.
     fn factorise_true_hessian(&mut self, curves: &Curves, x: &[f64]) -> bool {
         self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
@@ -409,14 +326,6 @@ impl<'a> Solver<'a> {
             self.factorise_shifted();
         }
         stable
-    }
-
-    /// The true matrix + μI with the μ of the last step; ten times more, and so on, where it is not positive definite.
-    fn factorise_damped(&mut self, curves: &Curves, x: &[f64]) {
-        let last = self.shift;
-        self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
-        let least = if last > 0.0 { last } else { DAMPING * self.mean_diagonal() };
-        let _ = (0..16).any(|power| self.factorise(least * 10f64.powi(power)));
     }
 
     /// Adds μ to the diagonal, ten times more each time, until the matrix is positive definite.
@@ -452,43 +361,6 @@ impl<'a> Solver<'a> {
         self.gradient.iter().zip(&self.step).map(|(g, d)| g * d).sum()
     }
 
-    /// Moves along the step, halved until it is acceptable.
-    fn line_search(
-        &mut self,
-        curves: &Curves,
-        x: &mut [f64],
-        energy: &mut f64,
-        slope: f64,
-        nonmonotone: bool,
-    ) -> bool {
-        if !(slope < 0.0) {
-            return false;
-        }
-        let norm = self.cloth.norm(&self.gradient);
-        let mut length = 1.0;
-        for halving in 0..30 {
-            let trial_energy = self.try_step(curves, x, length);
-            let acceptable = if halving == 0 && nonmonotone {
-                trial_energy <= *energy + NONMONOTONE * slope.abs()
-            } else {
-                trial_energy <= *energy + 1e-4 * length * slope
-            };
-            // Near the end energy differences drown in rounding: the imbalance decides.
-            let contraction = self.cloth.norm(&self.trial_gradient) / norm;
-            if contraction.is_finite()
-                && (acceptable || contraction < 0.5)
-                && !self.cloth.hinge_jumps(x, &self.trial)
-            {
-                self.step.iter_mut().for_each(|d| *d *= length);
-                self.contraction = contraction;
-                *energy = self.accept(x, trial_energy);
-                return true;
-            }
-            length *= 0.5;
-        }
-        false
-    }
-
     /// Energy after a share of the step; the state and its gradient stay in `trial`.
     fn try_step(&mut self, curves: &Curves, x: &[f64], length: f64) -> f64 {
         for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.step) {
@@ -504,50 +376,5 @@ impl<'a> Solver<'a> {
         std::mem::swap(&mut self.gradient, &mut self.trial_gradient);
         std::mem::swap(&mut self.scale, &mut self.trial_scale);
         energy
-    }
-
-    /// (K + μI) d = −g with μ a tenth after each success, ten times after each failure.
-    fn levenberg_marquardt(
-        &mut self,
-        curves: &Curves,
-        x: &mut [f64],
-        settings: &Settings,
-        energy: &mut f64,
-        iterations: &mut usize,
-    ) -> Status {
-        // Before the first step there is no μ, whatever a former solve has left.
-        self.shift = 0.0;
-        let mut shift = None;
-        while *iterations < settings.max_iterations {
-            if self.is_balanced(x, settings) {
-                return Status::Converged;
-            }
-            self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
-            let mean = self.mean_diagonal();
-            let mut damping = shift.unwrap_or(DAMPING * mean);
-            let norm = self.cloth.norm(&self.gradient);
-            *iterations += 1;
-            loop {
-                // Written so that a NaN stops it too.
-                if !(damping <= 1e9 * mean) {
-                    return Status::Stalled;
-                }
-                if self.factorise(damping) {
-                    self.direction();
-                    let trial_energy = self.try_step(curves, x, 1.0);
-                    let smaller = self.cloth.norm(&self.trial_gradient) < 0.5 * norm;
-                    if trial_energy.is_finite()
-                        && (trial_energy < *energy || smaller)
-                        && !self.cloth.hinge_jumps(x, &self.trial)
-                    {
-                        *energy = self.accept(x, trial_energy);
-                        break;
-                    }
-                }
-                damping *= 10.0;
-            }
-            shift = Some(0.1 * damping);
-        }
-        if self.is_balanced(x, settings) { Status::Converged } else { Status::IterationLimit }
     }
 }

@@ -281,6 +281,9 @@ fn measured_shape(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
 pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
     let cloth = replica.cloth(frame);
     let own = frame.start.clone();
+    if frame.observed.is_none() || replica.is_on_table() {
+        return State { x: own, ..State::default() };
+    }
     let measured = measured_shape(replica, frame);
     let imbalance = |x: &[f64]| {
         let mut gradient = vec![0.0; x.len()];

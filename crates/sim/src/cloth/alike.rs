@@ -9,6 +9,7 @@
 use crate::bending::Bending;
 use crate::membrane::Membrane;
 use crate::mesh::Mesh;
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
 /// Offsets at rest that differ by less than this share of the mean edge are the same.
@@ -69,16 +70,17 @@ impl<'a> Alike<'a> {
         let mut place_of: HashMap<Key, usize> = HashMap::new();
         for mut element in elements.drain(..) {
             let own = nodes(&element);
-            match place_of.get(&self.key(&own)) {
-                Some(&place) => {
-                    let stands = nodes(&kept[place]);
+            match place_of.entry(self.key(&own)) {
+                Entry::Occupied(place) => {
+                    let kept = &mut kept[*place.get()];
+                    let stands = nodes(kept);
+                    *extent(kept) += *extent(&mut element);
                     let pairs = own[1..].iter().zip(&stands[1..]);
                     self.twins
                         .extend(pairs.map(|(&left_out, &kept)| [[own[0], left_out], [stands[0], kept]]));
-                    *extent(&mut kept[place]) += *extent(&mut element);
                 }
-                None => {
-                    place_of.insert(self.key(&own), kept.len());
+                Entry::Vacant(place) => {
+                    place.insert(kept.len());
                     kept.push(element);
                 }
             }
