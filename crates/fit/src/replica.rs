@@ -375,6 +375,7 @@ fn cloth(
         gravity,
         held,
         tied,
+        guided: &[],
         planar,
     })
     .map_err(|source| Error::Mechanics { context: sequence.name.clone(), source })

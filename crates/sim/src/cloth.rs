@@ -4,6 +4,7 @@
 //! unknowns a node where the motion is planar, no unknown for a node that is held.
 
 mod alike;
+mod guide;
 mod numbering;
 
 use crate::bending::Bending;
@@ -13,12 +14,13 @@ use crate::element::{
 };
 use crate::error::{Error, Result};
 use crate::linear::Pattern;
-use crate::load::{Held, lumped_masses};
+use crate::load::{Guided, Held, lumped_masses};
 use crate::material::{Component, Curves, Model};
 use crate::membrane::Membrane;
 use crate::mesh::{Edge, Mesh};
 use alike::{Alike, Twins, are_alike};
-use nalgebra::Vector3;
+use guide::Guide;
+use nalgebra::{Matrix3, Vector3};
 use numbering::{GraphPass, ScatterPass, columns, leaders, number};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -41,6 +43,8 @@ pub struct Problem<'a> {
     /// groups are parallel in every state, as they are at rest, so that of elements between the same groups one stands for
     /// all. A group is free, or held by one clip, as a whole.
     pub tied: &'a [Vec<usize>],
+    /// Nodes that may move in some directions only; neither held nor tied.
+    pub guided: &'a [Guided],
     /// All motion is in planes z = const: two unknowns a node.
     pub planar: bool,
 }
@@ -51,8 +55,10 @@ pub struct Problem<'a> {
 pub struct Cloth {
     membrane: Membrane,
     bending: Option<Bending>,
-    /// Weight of every node, N; empty if there is none.
-    weights: Vec<Vector3<f64>>,
+    /// Of every node, kg.
+    masses: Vec<f64>,
+    /// m/s².
+    gravity: Vector3<f64>,
     nodes: usize,
     clips: usize,
     clip_of: Vec<Option<usize>>,
@@ -68,6 +74,7 @@ pub struct Cloth {
     /// Every coordinate that is not held, and its unknown.
     free: Vec<(usize, usize)>,
     pattern: Pattern,
+    guides: Vec<Guide>,
     /// Per part: where each lower entry of each element goes. See [`Cloth::hessian`].
     targets: [Vec<u32>; 2],
     /// Where the diagonal stands among the entries.
@@ -78,12 +85,21 @@ pub struct Cloth {
 const HELD: usize = usize::MAX;
 
 impl Cloth {
-    /// Makes a problem ready.
+    /// Makes a problem of equilibrium ready.
     ///
     /// # Errors
-    /// Springs on a mesh that is no grid; a collapsed hinge; a density below zero; a held node that does not exist;
-    /// bending, or weight across the plane, in a planar problem; a part of the cloth that nothing holds.
+    /// As [`Cloth::in_motion`]; a part of the cloth that nothing holds.
     pub fn new(problem: &Problem<'_>) -> Result<Self> {
+        check_pinned(problem)?;
+        Self::in_motion(problem)
+    }
+
+    /// Makes a problem of motion ready: nothing needs to hold the cloth.
+    ///
+    /// # Errors
+    /// Springs on a mesh that is no grid; a collapsed hinge; a density below zero; a held, tied or guided node that does
+    /// not exist or is two of these; bending, guides, or weight across the plane, in a planar problem.
+    pub fn in_motion(problem: &Problem<'_>) -> Result<Self> {
         let Problem { mesh, model, components, planar, .. } = *problem;
         check(problem)?;
         let mut membrane = Membrane::new(model, mesh, components)?;
@@ -93,14 +109,6 @@ impl Cloth {
         let alike = Alike::new(mesh, &leader, mean_edge);
         let twins =
             if problem.tied.is_empty() { Vec::new() } else { alike.merge(&mut membrane, &mut bending) };
-        let weights = if problem.gravity == Vector3::zeros() {
-            Vec::new()
-        } else {
-            lumped_masses(mesh, problem.areal_density)
-                .into_iter()
-                .map(|mass| problem.gravity * mass)
-                .collect()
-        };
         let mut held = vec![false; mesh.len()];
         let mut clip_of = vec![None; mesh.len()];
         for &Held { node, clip } in problem.held {
@@ -127,6 +135,7 @@ impl Cloth {
             expected: "a mesh whose factorisation fits into memory",
         };
         let pattern = Pattern::new(&columns).ok_or(too_large)?;
+        let guides = guide::guides(problem.guided, &unknown_of, &neighbours, &pattern)?;
         let diagonal = (0..unknowns.len()).filter_map(|unknown| pattern.position(unknown, unknown)).collect();
         let clips = clip_of.iter().flatten().max().map_or(0, |&last| last + 1);
         let mut scatter = ScatterPass {
@@ -141,7 +150,8 @@ impl Cloth {
         Ok(Self {
             membrane,
             bending,
-            weights,
+            masses: lumped_masses(mesh, problem.areal_density),
+            gravity: problem.gravity,
             nodes: mesh.len(),
             clips,
             clip_of,
@@ -152,6 +162,7 @@ impl Cloth {
             unknowns,
             free,
             pattern,
+            guides,
             targets,
             diagonal,
         })
@@ -197,10 +208,12 @@ impl Cloth {
         &self.free
     }
 
-    /// Sums a quantity of all coordinates, as a gradient, over each unknown.
+    /// Sums a quantity of all coordinates, as a gradient, over each unknown; of a guided node the part along its free
+    /// directions.
     pub fn collect(&self, coordinates: &[f64], unknowns: &mut [f64]) {
         unknowns.fill(0.0);
         self.free.iter().for_each(|&(coordinate, unknown)| unknowns[unknown] += coordinates[coordinate]);
+        self.project(unknowns);
     }
 
     /// Sets the coordinates that are not held to their unknown's value, as of a step.
@@ -212,9 +225,7 @@ impl Cloth {
     ///
     /// * `x` — 3 stacked coordinates a node, m
     pub fn energy(&self, curves: &Curves, x: &[f64]) -> f64 {
-        let mut pass = EnergyPass { curves, x, energy: 0.0 };
-        self.visit(&mut pass);
-        pass.energy + self.weight_energy(x)
+        self.elastic_energy(curves, x) + self.weight_energy(x)
     }
 
     /// Gradient of the total energy, N, 3 a node, held nodes included; returns the energy, J.
@@ -234,13 +245,16 @@ impl Cloth {
         };
         self.visit(&mut pass);
         let energy = pass.energy;
-        for (node, weight) in self.weights.iter().enumerate() {
-            (0..3).for_each(|i| gradient[3 * node + i] -= weight[i]);
+        if self.gravity != Vector3::zeros() {
+            for (mass, gradient) in self.masses.iter().zip(gradient.chunks_exact_mut(3)) {
+                (0..3).for_each(|i| gradient[i] -= mass * self.gravity[i]);
+            }
         }
         energy + self.weight_energy(x)
     }
 
-    /// The Hessian over the unknowns, and its border.
+    /// The Hessian over the unknowns, and its border. Of a guided node the rows and columns are those of its free
+    /// directions; across them stands a positive diagonal, which no force acts on.
     ///
     /// `values` holds, in this order: the lower triangle by columns ([`Cloth::entries`]); the derivative of each clip's
     /// summed gradient with respect to the unknowns, 3 × clips rows of [`Cloth::unknowns`] each; one number to ignore.
@@ -254,6 +268,16 @@ impl Cloth {
         // Elements list an entry and its mirror once; where both fall on one diagonal entry, it counts twice.
         (0..twice).for_each(|place| values[place] += 2.0 * values[len + place]);
         values.truncate(len);
+        let (lower, border) = values.split_at_mut(self.entries());
+        self.filter(lower);
+        for row in border.chunks_exact_mut(self.unknowns.len().max(1)) {
+            self.guides.iter().for_each(|guide| guide.project(row));
+        }
+    }
+
+    /// Filters the lower entries of a matrix to the directions in which guided nodes may move.
+    pub(crate) fn filter(&self, lower: &mut [f64]) {
+        self.guides.iter().for_each(|guide| guide.filter(lower));
     }
 
     /// Where the entry of two unknowns stands among the Hessian's values; `None` where it is zero in every state.
@@ -348,7 +372,7 @@ impl Cloth {
 
     /// Weight of a node, N.
     pub(crate) fn weight(&self, node: usize) -> f64 {
-        self.weights.get(node).map_or(0.0, Vector3::norm)
+        self.masses[node] * self.gravity.norm()
     }
 
     fn is_tied(&self) -> bool {
@@ -358,7 +382,7 @@ impl Cloth {
     /// Norm of a gradient over the unknowns, N.
     pub(crate) fn norm(&self, gradient: &[f64]) -> f64 {
         let square = |forces: &mut dyn Iterator<Item = f64>| forces.map(|f| f * f).sum::<f64>().sqrt();
-        if !self.is_tied() {
+        if !self.is_tied() && self.guides.is_empty() {
             return square(&mut self.unknowns.iter().map(|&coordinate| gradient[coordinate]));
         }
         let mut forces = vec![0.0; self.unknowns.len()];
@@ -370,9 +394,57 @@ impl Cloth {
         3 * self.clips * self.unknowns.len()
     }
 
-    fn weight_energy(&self, x: &[f64]) -> f64 {
-        let node = |(weight, x): (&Vector3<f64>, &[f64])| -weight.dot(&Vector3::from_column_slice(x));
-        self.weights.iter().zip(x.chunks_exact(3)).map(node).sum()
+    /// Energy of the weight, J: −Σ m g·x; zero without gravity.
+    pub fn weight_energy(&self, x: &[f64]) -> f64 {
+        if self.gravity == Vector3::zeros() {
+            return 0.0;
+        }
+        let node = |(mass, x): (&f64, &[f64])| -mass * self.gravity.dot(&Vector3::from_column_slice(x));
+        self.masses.iter().zip(x.chunks_exact(3)).map(node).sum()
+    }
+
+    /// Elastic energy, J: the total without that of the weight.
+    pub fn elastic_energy(&self, curves: &Curves, x: &[f64]) -> f64 {
+        let mut pass = EnergyPass { curves, x, energy: 0.0 };
+        self.visit(&mut pass);
+        pass.energy
+    }
+
+    /// Mass of every unknown, kg: of nodes that move alike, all of theirs.
+    pub(crate) fn unknown_masses(&self) -> Vec<f64> {
+        let mut masses = vec![0.0; self.unknowns.len()];
+        self.free.iter().for_each(|&(coordinate, unknown)| masses[unknown] += self.masses[coordinate / 3]);
+        masses
+    }
+
+    /// Projects a vector over the unknowns onto the directions in which guided nodes may move.
+    pub(crate) fn project(&self, unknowns: &mut [f64]) {
+        self.guides.iter().for_each(|guide| guide.project(unknowns));
+    }
+
+    /// Adds a multiple of every node's block to the lower entries of a matrix.
+    pub(crate) fn add_blocks(&self, blocks: &[Matrix3<f64>], factor: f64, lower: &mut [f64]) {
+        // A node's unknowns follow one another.
+        for pair in self.free.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
+            for &(row_coordinate, row) in pair {
+                for &(column_coordinate, column) in pair.iter().filter(|&&(_, column)| column <= row) {
+                    if let Some(place) = self.pattern.position(row, column) {
+                        let block = &blocks[row_coordinate / 3];
+                        lower[place] += factor * block[(row_coordinate % 3, column_coordinate % 3)];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Lumped mass of every node, kg.
+    pub fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    /// The triangles of the rest mesh.
+    pub fn triangles(&self) -> &[[usize; 3]] {
+        &self.triangles
     }
 
     fn visit(&self, pass: &mut impl Pass) {
@@ -429,11 +501,11 @@ fn check(problem: &Problem<'_>) -> Result<()> {
         });
     }
     let bends = problem.components.iter().any(|component| component.is_bending());
-    if problem.planar && (bends || problem.gravity.z != 0.0) {
+    if problem.planar && (bends || !problem.guided.is_empty() || problem.gravity.z != 0.0) {
         return Err(Error::InvalidValue {
             field: "planar",
             value: 1.0,
-            expected: "a problem without bending and without weight across its plane",
+            expected: "a problem without bending, without guides and without weight across its plane",
         });
     }
     let mesh = problem.mesh;
@@ -454,9 +526,34 @@ fn check(problem: &Problem<'_>) -> Result<()> {
             expected: "nodes of the mesh, each in one group, which is free or held by one clip",
         });
     }
+    let tied: BTreeSet<usize> = problem.tied.iter().flatten().copied().collect();
+    let mut seen = BTreeSet::new();
+    let mut unfit = |&&Guided { node, .. }: &&Guided| {
+        node >= mesh.len() || held.contains_key(&node) || tied.contains(&node) || !seen.insert(node)
+    };
+    if let Some(guided) = problem.guided.iter().find(|guided| unfit(guided)) {
+        let expected = "nodes of the mesh, each once, and neither held nor tied";
+        return Err(Error::InvalidValue { field: "guided", value: guided.node as f64, expected });
+    }
+    Ok(())
+}
+
+/// Every part of the cloth is held by a node, or by guides that no translation escapes.
+fn check_pinned(problem: &Problem<'_>) -> Result<()> {
+    let mesh = problem.mesh;
+    if problem.held.iter().any(|held| held.node >= mesh.len()) {
+        // What is wrong there is said later.
+        return Ok(());
+    }
     let parts = mesh.parts();
-    let held: BTreeSet<usize> = problem.held.iter().map(|held| parts[held.node]).collect();
-    match parts.iter().find(|part| !held.contains(part)) {
+    let mut pinned: BTreeSet<usize> = problem.held.iter().map(|held| parts[held.node]).collect();
+    let mut blocked: BTreeMap<usize, Matrix3<f64>> = BTreeMap::new();
+    for guided in problem.guided.iter().filter(|guided| guided.node < mesh.len()) {
+        *blocked.entry(parts[guided.node]).or_default() += Matrix3::identity() - guided.free.projection()?;
+    }
+    let holds = |blocked: &Matrix3<f64>| blocked.symmetric_eigenvalues().min() > 1e-9;
+    pinned.extend(blocked.iter().filter(|(_, blocked)| holds(blocked)).map(|(&part, _)| part));
+    match parts.iter().find(|part| !pinned.contains(part)) {
         Some(&vertex) => Err(Error::Unpinned {
             vertex,
             vertices: parts.iter().filter(|&&part| part == vertex).count(),

@@ -191,6 +191,15 @@ impl StiffnessCurve {
         self.response(strain).stress
     }
 
+    /// An upper bound of dσ/dε from zero on, which it meets where the curve is steepest at a control point.
+    pub fn greatest_tangent(&self) -> f64 {
+        match stability_rows(&self.strains) {
+            // Bernstein coefficients bound the tangent from above as from below.
+            Ok(rows) => (rows * nalgebra::DVector::from_column_slice(&self.stiffnesses)).max(),
+            Err(_) => self.end.1.tangent,
+        }
+    }
+
     /// Secant stiffness σ/ε at a strain.
     pub fn stiffness(&self, strain: f64) -> f64 {
         if strain == 0.0 { self.stiffnesses[0] } else { self.stress(strain) / strain }

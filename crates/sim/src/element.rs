@@ -86,6 +86,8 @@ pub enum Curvature<'a> {
     Mixed(&'a [f64]),
     /// Geometric part clamped to be positive semi-definite, element by element.
     Clamped,
+    /// No geometric part, and no softening: the matrix of damping in proportion to stiffness.
+    Material,
 }
 
 /// A pass over all elements of the cloth, whatever their kind.
@@ -191,7 +193,7 @@ impl Pass for HessianPass<'_> {
                 let Some(curve) = self.curves.get(components[c]) else { continue };
                 let response = curve.response(strains[c]);
                 // A curve that softens has a negative tangent, which clamping drops too.
-                let clamped = self.curvature == Curvature::Clamped;
+                let clamped = matches!(self.curvature, Curvature::Clamped | Curvature::Material);
                 tangent[c] = area * if clamped { response.tangent.max(0.0) } else { response.tangent };
                 stress[c] = area
                     * match self.curvature {
@@ -212,6 +214,7 @@ impl Pass for HessianPass<'_> {
             }
             match self.curvature {
                 Curvature::Clamped => element.add_clamped(&x, &stress, &mut blocks),
+                Curvature::Material => (),
                 _ => element.add_geometric(&x, &stress, &mut blocks),
             }
             complete(&mut blocks);

@@ -10,7 +10,8 @@
 
 use crate::cloth::{Cloth, ForceScale};
 use crate::element::Curvature;
-use crate::linear::Factor;
+use crate::increment::Increment;
+use crate::linear::{Factor, Linear};
 use crate::material::Curves;
 use nalgebra::Vector3;
 
@@ -18,6 +19,7 @@ mod drive;
 mod escape;
 mod levenberg_marquardt;
 mod newton;
+mod time_step;
 
 /// How equilibria are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,7 +141,9 @@ const ESCAPES: usize = 6;
 /// The memory that finding equilibria of one cloth needs. One a thread.
 pub struct Solver<'a> {
     cloth: &'a Cloth,
-    factor: Factor,
+    linear: Linear,
+    /// What a time step adds to the energy.
+    pub(crate) increment: Option<Increment>,
     values: Vec<f64>,
     gradient: Vec<f64>,
     scale: ForceScale,
@@ -164,10 +168,16 @@ pub struct Solver<'a> {
 impl<'a> Solver<'a> {
     /// Memory for one cloth.
     pub fn new(cloth: &'a Cloth) -> Self {
+        Self::with(cloth, Linear::Direct(Factor::new(cloth.pattern())))
+    }
+
+    /// The same with another way to solve linear systems.
+    pub(crate) fn with(cloth: &'a Cloth, linear: Linear) -> Self {
         let coordinates = 3 * cloth.nodes();
         Self {
             cloth,
-            factor: Factor::new(cloth.pattern()),
+            linear,
+            increment: None,
             values: Vec::new(),
             gradient: vec![0.0; coordinates],
             scale: ForceScale::new(cloth.nodes()),
@@ -204,7 +214,8 @@ impl<'a> Solver<'a> {
     /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
     /// solve, over the cloth's unknowns.
     pub fn solve_linear(&mut self, columns: &mut [f64]) {
-        self.factor.solve(self.cloth.pattern(), columns);
+        // Conjugate gradients belong to time steps, which need no sensitivities.
+        let _ = self.linear.solve(self.cloth.pattern(), columns);
     }
 
     /// Derivative of the clips' forces ([`Solver::clip_forces`]) with respect to the unknowns, N/m: 3 × clips rows.
@@ -226,7 +237,7 @@ impl<'a> Solver<'a> {
 
     /// A solve whose first matrix uses the strains in `mixed`, if there are any.
     fn settle(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
-        let before = self.factor.count;
+        let before = self.linear.factorisations();
         let mut found = self.minimise(curves, x, settings);
         for _ in 0..ESCAPES {
             let unstable = found.status == Status::Unstable;
@@ -234,16 +245,16 @@ impl<'a> Solver<'a> {
                 break;
             }
         }
-        Equilibrium { factorisations: self.factor.count - before, ..found }
+        Equilibrium { factorisations: self.linear.factorisations() - before, ..found }
     }
 
     /// A balanced state downhill, stable or not.
     fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
-        let before = self.factor.count;
+        let before = self.linear.factorisations();
         let mut iterations = 0;
         self.damping = 0.0;
         self.clamped = 0;
-        let mut energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        let mut energy = self.evaluate(curves, x);
         // An angle at a collapsed wing has a finite energy and forces that are not.
         let finite = energy.is_finite() && self.cloth.norm(&self.gradient).is_finite();
         let mut status = if finite { Status::Stalled } else { Status::NotFinite };
@@ -255,6 +266,8 @@ impl<'a> Solver<'a> {
         }
         match settings.method {
             _ if status == Status::NotFinite => (),
+            // A time step is no place to rest in: whether it is stable does not matter.
+            _ if self.increment.is_some() => (),
             Method::LevenbergMarquardt => self.factorise_damped(curves, x),
             Method::MixedNewton => {
                 let stable = self.factorise_true_hessian(curves, x);
@@ -264,14 +277,14 @@ impl<'a> Solver<'a> {
             }
         }
         let (imbalance, tolerance, limit) = self.balance(x, settings);
-        let factorisations = self.factor.count - before;
+        let factorisations = self.linear.factorisations() - before;
         let escaped = false;
         Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
     }
 
     /// Gradient and factor at a state that the last minimisation did not end in.
     fn refresh(&mut self, curves: &Curves, x: &[f64]) {
-        self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        self.evaluate(curves, x);
         self.factorise_true_hessian(curves, x);
     }
 
@@ -320,7 +333,7 @@ impl<'a> Solver<'a> {
 
     /// True if the state is stable: no stiffness is negative, or zero up to rounding.
     fn factorise_true_hessian(&mut self, curves: &Curves, x: &[f64]) -> bool {
-        self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+        self.assemble(curves, x, Curvature::Full);
         let stable = self.factorise(-SINGULAR * self.mean_diagonal());
         if !stable {
             self.factorise_shifted();
@@ -330,8 +343,7 @@ impl<'a> Solver<'a> {
 
     /// Adds μ to the diagonal, ten times more each time, until the matrix is positive definite.
     fn factorise_shifted(&mut self) -> bool {
-        let mean = self.mean_diagonal();
-        (0..16).any(|power| self.factorise(mean * 1e-9 * 10f64.powi(power)))
+        shifts(self.mean_diagonal()).any(|shift| self.factorise(shift))
     }
 
     /// Never zero: a cloth without any stiffness still gets a factor.
@@ -345,20 +357,65 @@ impl<'a> Solver<'a> {
     fn factorise(&mut self, shift: f64) -> bool {
         let diagonal = self.cloth.diagonal();
         diagonal.iter().for_each(|&place| self.values[place] += shift);
-        let made = self.factor.factorise(self.cloth.pattern(), &self.values[..self.cloth.entries()]);
+        let made = self.linear.prepare(self.cloth.pattern(), &self.values[..self.cloth.entries()]);
         diagonal.iter().for_each(|&place| self.values[place] -= shift);
         self.shift = shift;
         made.is_ok()
     }
 
-    /// d = −K⁻¹ g into `step`; returns g·d.
-    fn direction(&mut self) -> f64 {
+    /// d = −(K + μI)⁻¹ g of the assembled matrix; `None` where that is not positive definite.
+    fn direction_of(&mut self, shift: f64) -> Option<f64> {
+        if self.factorise(shift) { self.direction() } else { None }
+    }
+
+    /// d = −K⁻¹ g into `step`; returns g·d. `None` where conjugate gradients find K not positive definite.
+    fn direction(&mut self) -> Option<f64> {
         self.cloth.collect(&self.gradient, &mut self.reduced);
         self.reduced.iter_mut().for_each(|force| *force = -*force);
-        self.factor.solve(self.cloth.pattern(), &mut self.reduced);
+        if !self.solve_reduced() {
+            return None;
+        }
         self.step.fill(0.0);
         self.cloth.spread(&self.reduced, &mut self.step);
-        self.gradient.iter().zip(&self.step).map(|(g, d)| g * d).sum()
+        Some(self.gradient.iter().zip(&self.step).map(|(g, d)| g * d).sum())
+    }
+
+    fn solve_reduced(&mut self) -> bool {
+        self.linear.solve(self.cloth.pattern(), &mut self.reduced).is_ok()
+    }
+
+    fn is_direct(&self) -> bool {
+        matches!(self.linear, Linear::Direct(_))
+    }
+
+    /// Total energy, with what a time step adds.
+    fn energy(&mut self, curves: &Curves, x: &[f64]) -> f64 {
+        let added = self.increment.as_mut().map_or(0.0, |increment| increment.energy(self.cloth, x));
+        self.cloth.energy(curves, x) + added
+    }
+
+    /// The same and its gradient.
+    fn evaluate(&mut self, curves: &Curves, x: &[f64]) -> f64 {
+        let energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
+        let (gradient, scale) = (&mut self.gradient, &mut self.scale);
+        energy
+            + self.increment.as_mut().map_or(0.0, |added| added.add_gradient(self.cloth, x, gradient, scale))
+    }
+
+    /// The Hessian, with what a time step adds.
+    fn assemble(&mut self, curves: &Curves, x: &[f64], curvature: Curvature<'_>) {
+        self.cloth.hessian(curves, x, curvature, &mut self.values);
+        if let Some(increment) = &self.increment {
+            increment.add_hessian(self.cloth, &mut self.values);
+        }
+    }
+
+    /// The same with the geometric part at the strains that the last step predicted, if there was one.
+    fn assemble_mixed(&mut self, curves: &Curves, x: &[f64]) {
+        let mixed = std::mem::take(&mut self.mixed);
+        let curvature = if mixed.is_empty() { Curvature::Full } else { Curvature::Mixed(&mixed) };
+        self.assemble(curves, x, curvature);
+        self.mixed = mixed;
     }
 
     /// Energy after a share of the step; the state and its gradient stay in `trial`.
@@ -366,7 +423,14 @@ impl<'a> Solver<'a> {
         for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.step) {
             *trial = x + length * d;
         }
-        self.cloth.gradient(curves, &self.trial, &mut self.trial_gradient, &mut self.trial_scale)
+        let (gradient, scale) = (&mut self.trial_gradient, &mut self.trial_scale);
+        let energy = self.cloth.gradient(curves, &self.trial, gradient, scale);
+        let trial = &self.trial;
+        energy
+            + self
+                .increment
+                .as_mut()
+                .map_or(0.0, |added| added.add_gradient(self.cloth, trial, gradient, scale))
     }
 
     /// Takes the trial; the strains that the step predicted are kept for the next matrix.
@@ -377,4 +441,9 @@ impl<'a> Solver<'a> {
         std::mem::swap(&mut self.scale, &mut self.trial_scale);
         energy
     }
+}
+
+/// Shifts μ from a billionth of the mean of a diagonal up, ten times more each.
+fn shifts(mean: f64) -> impl Iterator<Item = f64> {
+    (0..16).map(move |power| mean * 1e-9 * 10f64.powi(power))
 }

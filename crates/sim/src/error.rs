@@ -112,6 +112,16 @@ pub enum Error {
         /// What it may be.
         expected: &'static str,
     },
+    /// A time step at which an explicit integrator is not stable.
+    #[error(
+        "step: found {step} s, expected at most {limit:.3e} s, beyond which Runge–Kutta is not stable here"
+    )]
+    UnstableStep {
+        /// The step asked for, s.
+        step: f64,
+        /// The longest stable one, s.
+        limit: f64,
+    },
     /// Two arrays that must have the same length have not.
     #[error("{what}: {found} given, {expected} expected")]
     ShapeMismatch {

@@ -62,11 +62,14 @@
 
 pub mod bending;
 pub mod cloth;
+mod conjugate_gradient;
 pub mod curve;
+pub mod dynamics;
 pub mod element;
 pub mod equilibrium;
 pub mod error;
 pub mod finite_difference;
+mod increment;
 mod linear;
 pub mod load;
 pub mod material;

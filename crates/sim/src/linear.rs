@@ -3,6 +3,7 @@
 //! The symbolic factorisation is made once for a pattern, the numeric one at every step, into memory that is kept.
 //! Everything runs on the calling thread: cloth this small gains from many frames at once, not from a parallel factor.
 
+use crate::conjugate_gradient::ConjugateGradient;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::{
@@ -133,8 +134,103 @@ impl Pattern {
         Some(range.start + found)
     }
 
+    /// Where a diagonal entry is stored.
+    pub(crate) fn diagonal(&self, column: usize) -> usize {
+        // Columns start with their diagonal.
+        self.lower.col_range(column).start
+    }
+
+    /// `product` = A x, A symmetric with these lower entries.
+    pub(crate) fn multiply(&self, lower: &[f64], x: &[f64], product: &mut [f64]) {
+        product.fill(0.0);
+        let rows = self.lower.row_idx();
+        for column in 0..self.size() {
+            let range = self.lower.col_range(column);
+            let factor = x[column];
+            let mut sum = lower[range.start] * factor;
+            for (&row, &value) in rows[range.clone()].iter().zip(&lower[range]).skip(1) {
+                product[row] += value * factor;
+                sum += value * x[row];
+            }
+            product[column] += sum;
+        }
+    }
+
     fn as_ref(&self) -> SymbolicSparseColMatRef<'_, usize> {
         self.lower.as_ref()
+    }
+}
+
+/// How linear systems are solved.
+pub(crate) enum Linear {
+    /// By factorisation.
+    Direct(Factor),
+    /// By conjugate gradients.
+    Iterative(ConjugateGradient),
+}
+
+impl Linear {
+    /// Makes the matrix with these lower entries ready.
+    pub(crate) fn prepare(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
+        match self {
+            Self::Direct(factor) => factor.factorise(pattern, lower),
+            Self::Iterative(gradients) => gradients.prepare(pattern, lower),
+        }
+    }
+
+    /// Solves in place for as many right-hand sides as are stacked in `columns`.
+    pub(crate) fn solve(
+        &mut self,
+        pattern: &Pattern,
+        columns: &mut [f64],
+    ) -> Result<(), NotPositiveDefinite> {
+        match self {
+            Self::Direct(factor) => {
+                factor.solve(pattern, columns);
+                Ok(())
+            }
+            Self::Iterative(gradients) => columns
+                .chunks_exact_mut(pattern.size().max(1))
+                .try_for_each(|column| gradients.solve(pattern, column)),
+        }
+    }
+
+    /// The direction, of length 1, in which K is softest, and the stiffness there, by inverse iteration with
+    /// K + μI, which is prepared. It ends when a negative stiffness is settled to 1 %.
+    pub(crate) fn softest(&mut self, pattern: &Pattern, shift: f64, direction: &mut [f64]) -> f64 {
+        direction.iter_mut().enumerate().for_each(|(index, d)| *d = irregular(index));
+        normalise(direction);
+        let mut before = direction.to_vec();
+        let mut stiffness = f64::INFINITY;
+        for _ in 0..INVERSE_ITERATIONS {
+            before.copy_from_slice(direction);
+            if self.solve(pattern, direction).is_err() {
+                return f64::INFINITY;
+            }
+            let length = normalise(direction);
+            let along: f64 = before.iter().zip(direction.iter()).map(|(a, b)| a * b).sum();
+            let last = std::mem::replace(&mut stiffness, along / length - shift);
+            if stiffness < 0.0 && (last - stiffness).abs() < 0.01 * stiffness.abs() {
+                break;
+            }
+        }
+        stiffness
+    }
+
+    /// How many factorisations were made.
+    pub(crate) fn factorisations(&self) -> usize {
+        match self {
+            Self::Direct(factor) => factor.count,
+            Self::Iterative(_) => 0,
+        }
+    }
+
+    /// How many iterations of conjugate gradients were made.
+    pub(crate) fn iterations(&self) -> usize {
+        match self {
+            Self::Direct(_) => 0,
+            Self::Iterative(gradients) => gradients.iterations,
+        }
     }
 }
 
@@ -143,7 +239,7 @@ pub(crate) struct Factor {
     values: Vec<f64>,
     memory: MemBuffer,
     /// How many factorisations were made.
-    pub(crate) count: usize,
+    count: usize,
 }
 
 /// The matrix has a pivot that is not positive, or an entry that is not finite.
@@ -161,7 +257,7 @@ impl Factor {
     }
 
     /// Factorises the matrix with these lower entries.
-    pub(crate) fn factorise(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
+    fn factorise(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
         self.count += 1;
         // A NaN would come back as a factor full of NaN, and as success.
         if !lower.iter().all(|value| value.is_finite()) {
@@ -184,7 +280,7 @@ impl Factor {
     }
 
     /// Solves for as many right-hand sides as are stacked in `columns`, in place.
-    pub(crate) fn solve(&mut self, pattern: &Pattern, columns: &mut [f64]) {
+    fn solve(&mut self, pattern: &Pattern, columns: &mut [f64]) {
         let size = pattern.size();
         if size == 0 {
             return;
@@ -205,26 +301,6 @@ impl Factor {
             Par::Seq,
             MemStack::new(memory),
         );
-    }
-
-    /// The direction, of length 1, in which K is softest, and the stiffness there, by inverse iteration with the factor
-    /// of K + μI. It ends when a negative stiffness is settled to 1 %.
-    pub(crate) fn softest(&mut self, pattern: &Pattern, shift: f64, direction: &mut [f64]) -> f64 {
-        direction.iter_mut().enumerate().for_each(|(index, d)| *d = irregular(index));
-        normalise(direction);
-        let mut before = direction.to_vec();
-        let mut stiffness = f64::INFINITY;
-        for _ in 0..INVERSE_ITERATIONS {
-            before.copy_from_slice(direction);
-            self.solve(pattern, direction);
-            let length = normalise(direction);
-            let along: f64 = before.iter().zip(direction.iter()).map(|(a, b)| a * b).sum();
-            let last = std::mem::replace(&mut stiffness, along / length - shift);
-            if stiffness < 0.0 && (last - stiffness).abs() < 0.01 * stiffness.abs() {
-                break;
-            }
-        }
-        stiffness
     }
 }
 

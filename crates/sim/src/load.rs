@@ -1,6 +1,8 @@
 //! What acts on the cloth from outside: its weight, and the clips and tables that hold it.
 
+use crate::error::{Error, Result};
 use crate::mesh::Mesh;
+use nalgebra::{Matrix3, Vector3};
 
 /// A node that is held at a prescribed place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,6 +11,57 @@ pub struct Held {
     pub node: usize,
     /// The clip that holds it, whose force is wanted; `None` for a table or a nail.
     pub clip: Option<usize>,
+}
+
+/// A node that may move in some directions only, as along a rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Guided {
+    /// Node index.
+    pub node: usize,
+    /// Where it may go.
+    pub free: Free,
+}
+
+/// The directions in which a guided node may move; vectors of any length but zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Free {
+    /// Two: across this normal.
+    Plane(Vector3<f64>),
+    /// One: along this line.
+    Line(Vector3<f64>),
+    /// None.
+    Nowhere,
+}
+
+impl Free {
+    /// The projection S onto the free directions: I − nnᵀ, ttᵀ or 0.
+    ///
+    /// Source: Baraff and Witkin 1998, §5.1.
+    ///
+    /// # Errors
+    /// A vector that is zero or not finite.
+    pub fn projection(self) -> Result<Matrix3<f64>> {
+        let unit = |direction: Vector3<f64>| {
+            let length = direction.norm();
+            // Written so that a NaN is caught too.
+            if !(length > 0.0 && length.is_finite()) {
+                let expected = "a direction of finite length above zero";
+                return Err(Error::InvalidValue { field: "guided", value: length, expected });
+            }
+            Ok(direction / length)
+        };
+        Ok(match self {
+            Self::Plane(normal) => {
+                let normal = unit(normal)?;
+                Matrix3::identity() - normal * normal.transpose()
+            }
+            Self::Line(along) => {
+                let along = unit(along)?;
+                along * along.transpose()
+            }
+            Self::Nowhere => Matrix3::zeros(),
+        })
+    }
 }
 
 /// Lumped masses, kg: a third of every triangle's mass to each of its vertices.

@@ -12,7 +12,7 @@ use crate::cloth::{Cloth, Problem};
 use crate::curve::StiffnessCurve;
 use crate::error::Result;
 use crate::linear::irregular;
-use crate::load::Held;
+use crate::load::{Guided, Held};
 use crate::material::{Component, Compression, Curves, Model};
 use crate::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Matrix3x2, Vector2, Vector3};
@@ -41,6 +41,8 @@ pub struct Sample {
     pub gravity: Vector3<f64>,
     /// Nodes at prescribed places.
     pub held: Vec<Held>,
+    /// Nodes that may move in some directions only.
+    pub guided: Vec<Guided>,
     /// All motion is in planes z = const.
     pub planar: bool,
     /// 3 stacked coordinates a node, m; held nodes at their places.
@@ -58,6 +60,7 @@ impl Sample {
             areal_density: AREAL_DENSITY,
             gravity: Vector3::zeros(),
             held: Vec::new(),
+            guided: Vec::new(),
             planar: false,
             start,
         }
@@ -77,6 +80,7 @@ impl Sample {
             gravity: self.gravity,
             held: &self.held,
             tied: &[],
+            guided: &self.guided,
             planar: self.planar,
         })
     }

@@ -122,6 +122,7 @@ fn tied_cloth(sample: &Sample, tied: &[Vec<usize>]) -> Cloth {
         gravity: sample.gravity,
         held: &sample.held,
         tied,
+        guided: &[],
         planar: sample.planar,
     })
     .expect("groups that are held or free")

@@ -231,6 +231,7 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
         gravity: Vector3::new(0.0, 0.0, -samples::GRAVITY),
         held: &held,
         tied: if as_cylinder { free } else { &[] },
+        guided: &[],
         planar: false,
     })
     .expect("a sheet that is held");

@@ -166,6 +166,7 @@ impl<'a> Truth<'a> {
             gravity: self.test.gravity,
             held: &held,
             tied: &self.lines(holders),
+            guided: &[],
             planar,
         })
         .map_err(|source| Error::Mechanics { context: format!("rig, {}", self.test.kind), source })

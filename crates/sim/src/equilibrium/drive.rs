@@ -41,7 +41,7 @@ impl Solver<'_> {
     ) -> Equilibrium {
         assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
         assert!(self.cloth.is_parallel(x), "tied groups are parallel");
-        let before = self.factor.count;
+        let before = self.linear.factorisations();
         let clips = motions(self.cloth, x, target);
         let limited = Settings { max_iterations: settings.max_iterations.min(ITERATIONS), ..*settings };
         let (mut done, mut length) = (0.0, 1.0);
@@ -68,7 +68,7 @@ impl Solver<'_> {
         }
         let energy = self.cloth.energy(curves, x);
         let (imbalance, tolerance, limit) = self.balance(x, settings);
-        let factorisations = self.factor.count - before;
+        let factorisations = self.linear.factorisations() - before;
         Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
     }
 
@@ -83,7 +83,7 @@ impl Solver<'_> {
             self.gradient.iter().zip(&self.trial_gradient).map(|(here, there)| (here - there) / probe);
         let change: Vec<f64> = change.collect();
         self.cloth.collect(&change, &mut self.reduced);
-        self.factor.solve(self.cloth.pattern(), &mut self.reduced);
+        self.solve_reduced();
         self.cloth.spread(&self.reduced, &mut self.step);
         let free = self.cloth.free_coordinates().iter();
         free.for_each(|&(coordinate, unknown)| state[coordinate] += self.reduced[unknown]);

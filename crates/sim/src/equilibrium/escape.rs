@@ -56,15 +56,15 @@ impl Solver<'_> {
 
     /// The lowest state along a direction, in steps that double: a mode that is hardly unstable has so little force that a
     /// single step, or many, would still count as balanced.
-    fn downhill(&self, curves: &Curves, origin: &[f64], direction: &[f64], side: f64) -> Vec<f64> {
+    fn downhill(&mut self, curves: &Curves, origin: &[f64], direction: &[f64], side: f64) -> Vec<f64> {
         let moved = |length: f64| -> Vec<f64> {
             origin.iter().zip(direction).map(|(x, d)| x + side * length * d).collect()
         };
         let mut best = moved(1.0);
-        let mut lowest = self.cloth.energy(curves, &best);
+        let mut lowest = self.energy(curves, &best);
         for doubling in 1..=DOUBLINGS {
             let trial = moved(f64::from(1 << doubling));
-            let energy = self.cloth.energy(curves, &trial);
+            let energy = self.energy(curves, &trial);
             if !(energy < lowest) || self.cloth.hinge_jumps(origin, &trial) {
                 break;
             }
@@ -76,7 +76,7 @@ impl Solver<'_> {
     /// The direction of most negative curvature, as long as the step to take along it; `None` if no curvature is
     /// negative beyond rounding. Needs the shifted factor of the true Hessian.
     fn way_down(&mut self) -> Option<Vec<f64>> {
-        let curvature = self.factor.softest(self.cloth.pattern(), self.shift, &mut self.reduced);
+        let curvature = self.linear.softest(self.cloth.pattern(), self.shift, &mut self.reduced);
         // Written so that a NaN has no direction either.
         if !(curvature < -super::SINGULAR * self.mean_diagonal()) {
             return None;

@@ -24,7 +24,7 @@ impl Solver<'_> {
             if self.is_balanced(x, settings) {
                 return Status::Converged;
             }
-            self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+            self.assemble(curves, x, Curvature::Full);
             let mean = self.mean_diagonal();
             let mut damping = shift.unwrap_or(DAMPING * mean);
             let norm = self.cloth.norm(&self.gradient);
@@ -34,8 +34,7 @@ impl Solver<'_> {
                 if !(damping <= 1e9 * mean) {
                     return Status::Stalled;
                 }
-                if self.factorise(damping) {
-                    self.direction();
+                if self.direction_of(damping).is_some() {
                     let trial_energy = self.try_step(curves, x, 1.0);
                     let smaller = self.cloth.norm(&self.trial_gradient) < 0.5 * norm;
                     if trial_energy.is_finite()
@@ -56,7 +55,7 @@ impl Solver<'_> {
     /// The true matrix + μI with the μ of the last step; ten times more, and so on, where it is not positive definite.
     pub(super) fn factorise_damped(&mut self, curves: &Curves, x: &[f64]) {
         let last = self.shift;
-        self.cloth.hessian(curves, x, Curvature::Full, &mut self.values);
+        self.assemble(curves, x, Curvature::Full);
         let least = if last > 0.0 { last } else { DAMPING * self.mean_diagonal() };
         let _ = (0..16).any(|power| self.factorise(least * 10f64.powi(power)));
     }

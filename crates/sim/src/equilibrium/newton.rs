@@ -4,7 +4,7 @@
 //! K̂ d = −g      K̂ = σ′(ε) ∇ε ∇εᵀ + σ(ε*) ∇²ε      ε* = ε + ∇ε·Δx before the last step Δx
 //! ```
 
-use super::{Settings, Solver, Status};
+use super::{Settings, Solver, Status, shifts};
 use crate::element::Curvature;
 use crate::material::Curves;
 
@@ -39,14 +39,12 @@ impl Solver<'_> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
-        while !self.is_balanced(x, settings) {
+        // A time step is predicted so well that forces too small to count would never be answered, and add up.
+        while (self.increment.is_some() && *iterations == 0) || !self.is_balanced(x, settings) {
             if *iterations >= settings.max_iterations {
                 return Status::IterationLimit;
             }
-            if !self.factorise_newton(curves, x) {
-                return Status::Stalled;
-            }
-            let slope = self.direction();
+            let Some(slope) = self.newton_direction(curves, x) else { return Status::Stalled };
             let nonmonotone = *iterations < NONMONOTONE_STEPS;
             *iterations += 1;
             if !self.line_search(curves, x, energy, slope, nonmonotone) {
@@ -57,10 +55,10 @@ impl Solver<'_> {
         Status::Converged
     }
 
-    /// Goes on with the last step's factor for as long as that pays: a solve and a gradient cost about a sixth of a new
-    /// factor.
+    /// Goes on with the last step's factor, if there is one, for as long as that pays: a solve and a gradient cost about a
+    /// sixth of a new factor.
     fn chord_steps(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings, energy: &mut f64) {
-        while self.contraction < CHORD_CONTRACTION && !self.is_balanced(x, settings) {
+        while self.is_direct() && self.contraction < CHORD_CONTRACTION && !self.is_balanced(x, settings) {
             let norm = self.cloth.norm(&self.gradient);
             self.direction();
             let trial_energy = self.try_step(curves, x, 1.0);
@@ -72,25 +70,26 @@ impl Solver<'_> {
         }
     }
 
-    /// The mixed matrix; where it is not positive definite, the clamped one, and after some of these the damped one first.
-    fn factorise_newton(&mut self, curves: &Curves, x: &[f64]) -> bool {
-        let mixed = if self.mixed.is_empty() { Curvature::Full } else { Curvature::Mixed(&self.mixed) };
-        self.cloth.hessian(curves, x, mixed, &mut self.values);
+    /// The direction of the mixed matrix; where that is not positive definite, of the clamped one, and after some of these of
+    /// the damped one first. Returns its slope g·d.
+    fn newton_direction(&mut self, curves: &Curves, x: &[f64]) -> Option<f64> {
+        self.assemble_mixed(curves, x);
         let mean = self.mean_diagonal();
-        if self.factorise(self.damping * mean) {
+        if let Some(slope) = self.direction_of(self.damping * mean) {
             self.damping = if self.damping > LEAST_DAMPING { 0.1 * self.damping } else { 0.0 };
-            return true;
+            return Some(slope);
         }
         self.clamped += 1;
         if self.damping < DAMPING && self.clamped > CLAMPED_STEPS {
             self.damping = DAMPING;
-            if self.factorise(DAMPING * mean) {
-                return true;
+            if let Some(slope) = self.direction_of(DAMPING * mean) {
+                return Some(slope);
             }
         }
-        self.cloth.hessian(curves, x, Curvature::Clamped, &mut self.values);
+        self.assemble(curves, x, Curvature::Clamped);
         // A clamped matrix may still be singular, as where nothing but bending holds a flat sheet.
-        self.factorise(0.0) || self.factorise_shifted()
+        let shifts = shifts(self.mean_diagonal());
+        std::iter::once(0.0).chain(shifts).find_map(|shift| self.direction_of(shift))
     }
 
     /// Moves along the step, halved until it is acceptable.

@@ -1,0 +1,92 @@
+//! Conjugate gradients with a diagonal preconditioner, for the sparse symmetric systems of a time step.
+//!
+//! ```text
+//! P = diag(A)     stop at rᵀP⁻¹r ≤ γ² bᵀP⁻¹b     start at 0
+//! ```
+//!
+//! Source: Baraff and Witkin 1998, §5.2; their filter is in the matrix already, see [`cloth::guide`](crate::cloth).
+
+use crate::linear::{NotPositiveDefinite, Pattern};
+
+/// The iteration's memory and settings.
+#[derive(Debug)]
+pub(crate) struct ConjugateGradient {
+    /// γ.
+    tolerance: f64,
+    max_iterations: usize,
+    /// The matrix's lower entries.
+    lower: Vec<f64>,
+    /// 1 / diagonal.
+    inverse_diagonal: Vec<f64>,
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    product: Vec<f64>,
+    /// How many iterations were made.
+    pub(crate) iterations: usize,
+}
+
+impl ConjugateGradient {
+    pub(crate) fn new(pattern: &Pattern, tolerance: f64, max_iterations: usize) -> Self {
+        let zeros = vec![0.0; pattern.size()];
+        Self {
+            tolerance,
+            max_iterations,
+            lower: vec![0.0; pattern.entries()],
+            inverse_diagonal: zeros.clone(),
+            residual: zeros.clone(),
+            direction: zeros.clone(),
+            product: zeros,
+            iterations: 0,
+        }
+    }
+
+    /// Takes a matrix.
+    pub(crate) fn prepare(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
+        self.lower.copy_from_slice(lower);
+        for (column, inverse) in self.inverse_diagonal.iter_mut().enumerate() {
+            let diagonal = lower[pattern.diagonal(column)];
+            // Written so that a NaN is caught too.
+            if !(diagonal > 0.0) {
+                return Err(NotPositiveDefinite);
+            }
+            *inverse = 1.0 / diagonal;
+        }
+        Ok(())
+    }
+
+    /// Replaces b by A⁻¹b; where the iterations run out, by what is reached. A direction without positive curvature is an
+    /// error, and `b` then undefined.
+    pub(crate) fn solve(&mut self, pattern: &Pattern, b: &mut [f64]) -> Result<(), NotPositiveDefinite> {
+        self.residual.copy_from_slice(b);
+        b.fill(0.0);
+        self.direction.fill(0.0);
+        let mut size = self.preconditioned_square();
+        let mut before = f64::INFINITY;
+        let enough = self.tolerance * self.tolerance * size;
+        for _ in 0..self.max_iterations {
+            if !(size > enough) {
+                break;
+            }
+            let turn = size / before;
+            for ((d, r), p) in self.direction.iter_mut().zip(&self.residual).zip(&self.inverse_diagonal) {
+                *d = p * r + turn * *d;
+            }
+            pattern.multiply(&self.lower, &self.direction, &mut self.product);
+            let curvature: f64 = self.direction.iter().zip(&self.product).map(|(d, q)| d * q).sum();
+            if !(curvature > 0.0) {
+                return Err(NotPositiveDefinite);
+            }
+            let length = size / curvature;
+            b.iter_mut().zip(&self.direction).for_each(|(x, d)| *x += length * d);
+            self.residual.iter_mut().zip(&self.product).for_each(|(r, q)| *r -= length * q);
+            before = size;
+            size = self.preconditioned_square();
+            self.iterations += 1;
+        }
+        if size.is_finite() { Ok(()) } else { Err(NotPositiveDefinite) }
+    }
+
+    fn preconditioned_square(&self) -> f64 {
+        self.residual.iter().zip(&self.inverse_diagonal).map(|(r, p)| r * r * p).sum()
+    }
+}
