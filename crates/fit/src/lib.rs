@@ -33,6 +33,7 @@
 //! | [`stage`], [`incremental`] | one curve, from set to report; all of them in order |
 //! | [`prediction`], [`compare`] | tests that a fit did not see; models and variants side by side |
 //! | [`measure`], [`validation`] | a frame summed up in one figure; motions and samples that no fit saw |
+//! | [`material`] | what a simulation must know of a fabric, from a fit or from hand
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //! | [`error`] | what is wrong with an input, and where |
 //!
@@ -80,6 +81,7 @@ pub mod io;
 pub mod knowledge;
 pub mod least_squares;
 mod locator;
+pub mod material;
 pub mod material_file;
 pub mod measure;
 pub mod prediction;
