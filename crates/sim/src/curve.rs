@@ -274,8 +274,7 @@ impl StiffnessCurve {
 
     /// The piece that holds a strain ≥ 0; `None` beyond the last control point.
     fn segment(&self, strain: f64) -> Option<&Segment> {
-        let index = self.strains.iter().skip(1).position(|&end| strain <= end)?;
-        self.segments.get(index)
+        self.segments.get(segment_at(&self.strains, strain)?)
     }
 }
 
@@ -288,6 +287,13 @@ pub fn equidistant(points: usize, last: f64) -> Vec<f64> {
         0 | 1 => vec![0.0; points],
         _ => (0..points).map(|i| last * i as f64 / (points - 1) as f64).collect(),
     }
+}
+
+/// The segment that a strain ≥ 0 lies in, its upper end included; `None` beyond the last control point.
+fn segment_at(strains: &[f64], strain: f64) -> Option<usize> {
+    let index = strains[1..].partition_point(|&end| end < strain);
+    // A NaN is below no end; it belongs to no segment.
+    strains[1..].get(index).filter(|&&end| strain <= end).map(|_| index)
 }
 
 fn check_strains(strains: &[f64]) -> Result<()> {
@@ -341,7 +347,7 @@ fn stress_row(strains: &[f64], strain: f64, row: &mut [f64]) {
         return;
     }
     // σ = k(ε)ε inside; beyond the end σₙ + Tₙ(ε − εₙ) = kₙε + εₙmₙ(ε − εₙ).
-    match strains.iter().skip(1).position(|&end| strain <= end) {
+    match segment_at(strains, strain) {
         Some(segment) => {
             let t = strain - strains[segment];
             for (power, coefficients) in segment_rows(strains, segment).iter().enumerate() {
