@@ -23,6 +23,7 @@
 //! |---|---|
 //! | [`frame`] | what was measured: set, sequence, frame |
 //! | [`io`], [`strip`], [`rig`] | where it comes from: files, a tensile machine's table, a known cloth |
+//! | [`curve_file`] | a curve as a table |
 //! | [`specimen`], [`replica`] | a simulation grid over the specimen; its cloth, what holds it, its frames |
 //! | [`gap`] | a start without any simulation |
 //! | [`simulation`] | equilibria of all frames, residuals, sensitivities |
@@ -72,6 +73,7 @@
 
 mod boundary;
 pub mod compare;
+pub mod curve_file;
 pub mod error;
 pub mod frame;
 pub mod gap;
