@@ -3,8 +3,9 @@
 //! ```text
 //!  goal    the sums over elements against references made by other means
 //!  data    analytic/: an irregular 5×5 patch under an affine map into space; strips under uniaxial tension;
-//!          rolled sheets of several meshes
-//!  passes  patch: inner forces 1e-12 N, border 1e-10 N, energy 1e-12; uniaxial 1e-8; rigidity 0.1 %
+//!          rolled sheets of several meshes; catenaries
+//!  passes  patch: inner forces 1e-12 N, border 1e-10 N, energy 1e-12; uniaxial 1e-8; rigidity 0.1 %;
+//!          catenary: sag within 0.5 %
 //! ```
 
 use cloth_sim::bending::Hinge;
@@ -14,6 +15,7 @@ use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::{Diagonals, Mesh};
 use cloth_sim::samples::{self, Sample, rolled};
+use fit_cloth_tests::strip::strip;
 use fit_cloth_tests::{data, rows};
 use nalgebra::{Matrix3x2, Vector2, Vector3};
 
@@ -172,5 +174,34 @@ fn hinge_effective_rigidity() {
         let (_, cell, mesh) = meshes.iter().find(|(name, ..)| *name == row[0]).unwrap();
         let (found, expected) = (rigidity(mesh, *cell, number(&row[1])), number(&row[3]));
         assert!((found / expected - 1.0).abs() < 1e-3, "{row:?}: {found}");
+    }
+}
+
+#[test]
+fn catenary() {
+    let columns: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
+    let weight = samples::AREAL_DENSITY * 9.8;
+    for row in rows("analytic/catenary_inextensible.csv") {
+        let [span, sag] = [number(&row[0]), number(&row[1])];
+        let stretch = [
+            (Component::StretchWeft, 1e4 * weight),
+            (Component::StretchWarp, 1e3 * weight),
+            (Component::Shear, 1e3 * weight),
+        ];
+        let curves = samples::linear_curves(Model::Stvk, &stretch).unwrap();
+        let mut sample = Sample::at_rest(strip(&columns, 0.02, 3), Model::Stvk, curves);
+        sample.gravity = Vector3::new(0.0, 0.0, -9.8);
+        sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.9999).then_some(1) });
+        sample.place(|p| Vector3::new(span * p.x, p.y, -4.0 * sag * p.x * (1.0 - p.x)));
+        let cloth = sample.cloth().unwrap();
+        let found = Solver::new(&cloth).solve(
+            &sample.curves,
+            &mut sample.start,
+            &Settings { max_iterations: 2000, ..Settings::default() },
+        );
+        assert!(found.converged(), "span {span}: {found:?}");
+        let off = -sample.start[3 * (50 * 3 + 1) + 2] / sag - 1.0;
+        println!("catenary, span {span}: sag {:+.3} %, {} iterations", 100.0 * off, found.iterations);
+        assert!(off.abs() < 0.005, "span {span}: {off}");
     }
 }

@@ -7,6 +7,7 @@ mod analytic;
 mod bias;
 mod cantilever;
 mod knits;
+mod motion;
 mod nist;
 mod picture_frame;
 mod strips;
