@@ -5,6 +5,7 @@ pub mod fit;
 pub mod goal;
 pub mod import;
 pub mod rig;
+pub mod simulate;
 pub mod study;
 pub mod validate;
 
@@ -36,6 +37,7 @@ pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failur
         Command::Bend(flags) => fit::run(Goal::Bend, flags, options.telling, output),
         Command::Fit(flags) => fit::run(Goal::All, flags, options.telling, output),
         Command::Compare(compare) => compare::run(compare, options.telling, output),
+        Command::Simulate(simulate) => simulate::run(simulate, options.telling, output),
         Command::Study(study) => study::run(study, options.telling, output),
         Command::Validate(validate) => validate::run(validate, options.telling, output),
     }

@@ -14,6 +14,8 @@ pub mod failure;
 pub mod options;
 pub mod plot;
 pub mod progress;
+pub mod scene;
+pub mod simulation;
 pub mod study;
 pub mod text;
 

@@ -11,6 +11,7 @@ use crate::command::compare::CompareOptions;
 use crate::command::goal;
 use crate::command::import::Import;
 use crate::command::rig::RigOptions;
+use crate::command::simulate::SimulateOptions;
 use crate::command::study::StudyOptions;
 use crate::command::validate::ValidateOptions;
 use clap::{Args, Parser, Subcommand};
@@ -51,6 +52,8 @@ pub enum Command {
     Compare(CompareOptions),
     /// Try fitted curves on motions and samples that the fit did not see
     Validate(ValidateOptions),
+    /// Simulate a scene of a material: hang it, drape it, fly it
+    Simulate(SimulateOptions),
     /// Study error against run time, and what each part of a scene saves and costs
     Study(StudyOptions),
 }

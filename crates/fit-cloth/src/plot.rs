@@ -1,11 +1,14 @@
-//! Figures of a fit or a validation, as SVG: `plots/*.svg`.
+//! Figures of a fit, a validation, a study or a simulation, as SVG: `plots/*.svg`.
 
 mod chart;
 mod forces;
 mod measure;
+mod shape;
 mod stress;
 mod study;
 
+use crate::scene::Scene;
+use crate::simulation::Simulation;
 use crate::study::Study;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::Kind;
@@ -73,6 +76,20 @@ pub fn write_study_plots(folder: &Path, study: &Study) -> Result<()> {
         if let Ok(figure) = figure {
             write_file(&plots.join(format!("{name}.svg")), figure.as_bytes())?;
         }
+    }
+    Ok(())
+}
+
+/// Writes the picture of a simulation's shapes into its folder.
+///
+/// # Errors
+/// What the operating system refuses.
+pub fn write_simulation_plots(folder: &Path, scene: &Scene, simulation: &Simulation) -> Result<()> {
+    let plots = folder.join("plots");
+    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
+    // Drawing into memory cannot fail but for a sheet without extent; then there is none.
+    if let Ok(figure) = shape::draw(scene, simulation) {
+        write_file(&plots.join("shapes.svg"), figure.as_bytes())?;
     }
     Ok(())
 }

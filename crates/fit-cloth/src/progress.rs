@@ -6,6 +6,36 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::Arc;
 use std::time::Duration;
 
+/// A line that counts steps.
+pub struct StepBar {
+    bar: ProgressBar,
+}
+
+impl StepBar {
+    /// Starts a line.
+    pub fn new(what: &str, visible: bool) -> Self {
+        let bar = if visible { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
+        let style = ProgressStyle::with_template("{spinner} {prefix}: {msg} [{elapsed}]");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.set_prefix(what.to_string());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self { bar }
+    }
+
+    /// Says which step was made, and of how many if that is known.
+    pub fn at(&self, step: usize, steps: Option<usize>) {
+        self.bar.set_message(match steps {
+            Some(steps) => format!("step {step} of {steps}"),
+            None => format!("step {step}"),
+        });
+    }
+
+    /// Removes the line.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// A line that turns while something runs.
 pub struct Progress {
     bar: ProgressBar,

@@ -2,6 +2,7 @@
 
 mod comparison;
 mod residuals;
+mod simulation;
 mod stage;
 mod study;
 mod summary;
@@ -10,6 +11,7 @@ mod verdict;
 
 pub use comparison::comparison;
 pub use residuals::residuals;
+pub use simulation::simulation;
 pub use stage::stage;
 pub use study::{study, study_page};
 pub use summary::{as_published, missing, summary};

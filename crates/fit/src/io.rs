@@ -19,14 +19,19 @@ mod number;
 mod obj;
 mod ply;
 mod scale;
+mod shape_file;
 mod shapes;
 mod source;
 pub mod table;
 mod test_file;
 #[cfg(test)]
 mod tests;
-pub(crate) mod toml_file;
+mod toml_file;
 mod unit;
+
+pub use obj::{YarnAxes, read_mesh};
+pub use shape_file::{ShapeFormat, write_shapes};
+pub use toml_file::TomlFile;
 
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, Frame, MeasurementSet, Sequence};

@@ -23,6 +23,7 @@
 //! |---|---|
 //! | [`frame`] | what was measured: set, sequence, frame |
 //! | [`io`], [`strip`], [`rig`] | where it comes from: files, a tensile machine's table, a known cloth |
+//! | [`curve_file`] | a curve as a table |
 //! | [`specimen`], [`replica`] | a simulation grid over the specimen; its cloth, what holds it, its frames |
 //! | [`gap`] | a start without any simulation |
 //! | [`simulation`] | equilibria of all frames, residuals, sensitivities |
@@ -33,6 +34,7 @@
 //! | [`stage`], [`incremental`] | one curve, from set to report; all of them in order |
 //! | [`prediction`], [`compare`] | tests that a fit did not see; models and variants side by side |
 //! | [`measure`], [`validation`] | a frame summed up in one figure; motions and samples that no fit saw |
+//! | [`material`] | what a simulation must know of a fabric, from a fit or from hand
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //! | [`error`] | what is wrong with an input, and where |
 //!
@@ -71,6 +73,7 @@
 
 mod boundary;
 pub mod compare;
+pub mod curve_file;
 pub mod error;
 pub mod frame;
 pub mod gap;
@@ -80,6 +83,7 @@ pub mod io;
 pub mod knowledge;
 pub mod least_squares;
 mod locator;
+pub mod material;
 pub mod material_file;
 pub mod measure;
 pub mod prediction;

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several, or what a
-/// comparison, a validation or a study writes. Hidden files do not count.
+/// comparison, a validation, a study or a simulation writes. Hidden files do not count.
 pub fn check_output(folder: &Path) -> Result<()> {
     let refuse = |found: &str| {
         Err(Error::input(
@@ -49,7 +49,12 @@ pub fn check_output(folder: &Path) -> Result<()> {
         Model::ALL.iter().any(|model| model.to_string() == name(folder)) && is_result(folder)
     };
     let entries = visible(folder);
-    let others = [("compare.json", &COMPARED[..]), ("validation.json", &VALIDATED), ("study.csv", &STUDIED)];
+    let others = [
+        ("compare.json", &COMPARED[..]),
+        ("validation.json", &VALIDATED),
+        ("study.csv", &STUDIED),
+        ("simulation.json", &SIMULATED),
+    ];
     let is_other = others.iter().any(|(main, all)| holds(folder, main, all));
     if is_other || is_result(folder) || entries.iter().all(is_model) {
         return Ok(());
@@ -68,6 +73,10 @@ const VALIDATED: [&str; 5] = ["validation.json", "validation.csv", "measures.csv
 
 /// What stands in the folder of a study.
 const STUDIED: [&str; 4] = ["study.csv", "ablation.csv", "study.md", "plots"];
+
+/// What stands in the folder of a simulation.
+const SIMULATED: [&str; 6] =
+    ["simulation.json", "mesh.obj", "frames", "positions.npy", "energies.csv", "plots"];
 
 /// Writes the result of one model into a folder that exists. A curve that no frame sees has no file.
 ///

@@ -64,6 +64,7 @@ pub mod bending;
 pub mod cloth;
 mod conjugate_gradient;
 pub mod curve;
+pub mod descent;
 pub mod dynamics;
 pub mod element;
 pub mod equilibrium;

@@ -12,6 +12,37 @@ use std::path::{Path, PathBuf};
 /// A corner of a face: its vertex and its material coordinates, both from 0.
 type Corner = (usize, Option<usize>);
 
+/// The axes of space that the yarns of a mesh without material coordinates lie along at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct YarnAxes {
+    /// Along weft.
+    pub weft: Vector3<f64>,
+    /// Along warp.
+    pub warp: Vector3<f64>,
+}
+
+/// Reads a rest mesh; polygons are split into triangles from their first corner.
+///
+/// * `axes` — for a file without `vt`: the material coordinates are the rest positions' components along these
+///
+/// # Errors
+/// No mesh, or one that no cloth can have, with its line; `vt` in spite of `axes`, or none without.
+pub fn read_mesh(path: &Path, axes: Option<YarnAxes>) -> Result<Mesh> {
+    let mut obj = Obj::read(path)?;
+    if let Some(YarnAxes { weft, warp }) = axes {
+        if !obj.coordinates.is_empty() {
+            let expected = "a file without vt where weft and warp are axes of space";
+            return Err(Error::input(path, None, "vt", "material coordinates", expected));
+        }
+        let along = |(_, p): &(usize, Vector3<f64>)| Vector2::new(p.dot(&weft), p.dot(&warp));
+        obj.coordinates = obj.vertices.iter().map(along).collect();
+        for (_, corners) in &mut obj.faces {
+            corners.iter_mut().for_each(|(vertex, coordinate)| *coordinate = Some(*vertex));
+        }
+    }
+    obj.mesh()
+}
+
 /// What stands in an OBJ file.
 pub(super) struct Obj {
     path: PathBuf,
@@ -229,10 +260,15 @@ impl Obj {
 
 /// A mesh as the text of an OBJ file that reads back to the same bits.
 pub(super) fn written(mesh: &Mesh) -> String {
-    let mut text =
-        String::from("# v = rest position [m], vt = material coordinates [m]: u = weft, v = warp\n");
+    let comment = "# v = rest position [m], vt = material coordinates [m]: u = weft, v = warp\n";
+    comment.to_string() + &shape(mesh, &mesh.positions)
+}
+
+/// The same mesh with its vertices elsewhere.
+pub(super) fn shape(mesh: &Mesh, positions: &[Vector3<f64>]) -> String {
+    let mut text = String::new();
     // Writing into a String cannot fail.
-    for p in &mesh.positions {
+    for p in positions {
         let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
     }
     for m in &mesh.material {

@@ -1,10 +1,12 @@
-//! Vertices of a PLY file, text or binary.
+//! Vertices of a PLY file, text or binary; a shape as one.
 
 use super::source::{read_bytes, shown};
 use crate::error::{Error, Result};
+use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult};
+use std::fmt::Write;
 use std::path::Path;
 
 /// Reads x, y and z of the element `vertex`; in a binary file NaN = not observed.
@@ -42,6 +44,24 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
         }
     }
     Err(Error::input(path, None, "element vertex", "nothing", "the vertices"))
+}
+
+/// A mesh with its vertices somewhere, as text.
+pub(super) fn shape(mesh: &Mesh, positions: &[Vector3<f64>]) -> String {
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        positions.len(),
+        mesh.triangles.len()
+    );
+    // Writing into a String cannot fail.
+    for p in positions {
+        let _ = writeln!(text, "{} {} {}", p.x, p.y, p.z);
+    }
+    for [a, b, c] in &mesh.triangles {
+        let _ = writeln!(text, "3 {a} {b} {c}");
+    }
+    text
 }
 
 /// An element takes a byte a row at least: a header that promises more would keep the reader busy for ever.

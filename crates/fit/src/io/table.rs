@@ -85,6 +85,11 @@ impl Table {
         self.rows.len()
     }
 
+    /// The line, from 1, that a row starts in.
+    pub fn line(&self, row: usize) -> usize {
+        self.rows[row].0
+    }
+
     /// A field's text.
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()

@@ -11,18 +11,22 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The text of a TOML file.
-pub(crate) struct TomlFile {
+pub struct TomlFile {
     path: PathBuf,
     text: String,
 }
 
 impl TomlFile {
-    pub(super) fn read(path: &Path) -> Result<Self> {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// It is missing, or no text.
+    pub fn read(path: &Path) -> Result<Self> {
         Ok(Self::of(path, read_text(path)?))
     }
 
     /// A file whose text is known already.
-    pub(crate) fn of(path: &Path, text: String) -> Self {
+    pub fn of(path: &Path, text: String) -> Self {
         Self { path: path.to_path_buf(), text }
     }
 
@@ -30,12 +34,12 @@ impl TomlFile {
     ///
     /// # Errors
     /// No TOML; a key unknown, missing or twice; a value of another type. All with line and key.
-    pub(crate) fn value<T: DeserializeOwned>(&self) -> Result<T> {
+    pub fn value<T: DeserializeOwned>(&self) -> Result<T> {
         toml::from_str(&self.text).map_err(|error| self.explain(&error))
     }
 
     /// Bad input at a key such as `clips[1].mass_kg`.
-    pub(crate) fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
+    pub fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         let mut line = None;
         self.visit(&mut |name, span| {
             if key.starts_with(name) {
@@ -46,7 +50,7 @@ impl TomlFile {
     }
 
     /// True if the file has a key such as `gravity_m_s2[3]`.
-    pub(crate) fn has(&self, key: &str) -> bool {
+    pub fn has(&self, key: &str) -> bool {
         let mut found = false;
         self.visit(&mut |name, _| found |= name == key);
         found

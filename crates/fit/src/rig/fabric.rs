@@ -1,7 +1,7 @@
 //! A fabric whose curves are known: what the rig measures.
 
 use crate::error::{Error, Result};
-use crate::io::toml_file::TomlFile;
+use crate::io::TomlFile;
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -130,9 +130,13 @@ impl KnownFabric {
     /// # Errors
     /// Text that is no such file, or a figure that no fabric or test can have, with its place.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let file = TomlFile::of(path, text.to_string());
+        Self::of(&TomlFile::of(path, text.to_string()))
+    }
+
+    /// The fabric that a file describes.
+    pub(crate) fn of(file: &TomlFile) -> Result<Self> {
         let fabric: Self = file.value()?;
-        fabric.check(&file)?;
+        fabric.check(file)?;
         Ok(fabric)
     }
 

@@ -1,0 +1,129 @@
+//! `fit-cloth simulate`: a scene of a material, in motion or at rest.
+
+use super::{Outcome, tell};
+use crate::failure::Failure;
+use crate::options::{CompressionChoice, Telling, refuse_within};
+use crate::plot::write_simulation_plots;
+use crate::progress::StepBar;
+use crate::scene::Scene;
+use crate::simulation::{self, Simulation};
+use crate::text;
+use clap::{Args, ValueEnum};
+use cloth_fit::error::Error;
+use cloth_fit::io::ShapeFormat;
+use cloth_fit::material::Material;
+use cloth_fit::result::check_output;
+use cloth_fit::store::replace_folder;
+use std::io::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "\
+Example:
+  fit-cloth simulate fixtures/scenes/hang.toml --material fixtures/materials/cotton.toml --out out/hang
+  fit-cloth simulate fixtures/scenes/drape.toml --material fixtures/materials/cotton.toml --rest --out out/drape
+
+Writes simulation.json, mesh.obj, frames/*.obj, energies.csv and plots/shapes.svg. A material is the material.json of a
+fit, or a TOML file: docs/formats.md.";
+
+/// `fit-cloth simulate`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct SimulateOptions {
+    /// The scene: a sheet, what holds it, the air, the solver
+    pub scene: PathBuf,
+    /// Of what it is made
+    #[arg(long, value_name = "FILE")]
+    pub material: PathBuf,
+    /// Where to write; a former result there is replaced [default: out/ and the scene's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go straight to the shape at rest
+    #[arg(long, conflicts_with = "duration")]
+    pub rest: bool,
+    /// In what form shapes are written: a file each, or one NumPy array
+    #[arg(long, value_enum, default_value_t = FormatChoice::Obj)]
+    pub format: FormatChoice,
+    /// How long to simulate [default: as the scene says]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_duration)]
+    pub duration: Option<f64>,
+    /// What weft and warp do under compression [default: as the material says]
+    #[arg(long, value_enum)]
+    pub compression: Option<CompressionChoice>,
+}
+
+/// [`ShapeFormat`] on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum FormatChoice {
+    /// frames/0000.obj …
+    Obj,
+    /// frames/0000.ply …
+    Ply,
+    /// positions.npy
+    Npy,
+}
+
+impl From<FormatChoice> for ShapeFormat {
+    fn from(choice: FormatChoice) -> Self {
+        match choice {
+            FormatChoice::Obj => Self::Obj,
+            FormatChoice::Ply => Self::Ply,
+            FormatChoice::Npy => Self::Npy,
+        }
+    }
+}
+
+/// Simulates.
+///
+/// # Errors
+/// Bad input, or an output folder that is no former result; what the operating system refuses.
+pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let folder = options.output_folder();
+    check_output(&folder)?;
+    for (flag, path) in [("SCENE", &options.scene), ("--material", &options.material)] {
+        refuse_within(flag, path, &folder)?;
+    }
+    let scene = Scene::read(&options.scene)?;
+    let material = Material::read(&options.material)?;
+    let material = match options.compression {
+        Some(choice) => material.with_compression(choice.into())?,
+        None => material,
+    };
+    let simulation = options.simulate(&scene, &material, telling)?;
+    replace_folder(&folder, |temporary| {
+        simulation::write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;
+        write_simulation_plots(temporary, &scene, &simulation)
+    })?;
+    let text = text::simulation(&scene, &material, &simulation);
+    let text = format!("{text}\nWritten to {}", folder.display());
+    tell(telling, output, &text, &simulation::simulation_json(&scene, &material, &simulation))?;
+    Ok(if simulation.converged() { Outcome::Done } else { Outcome::NotConverged })
+}
+
+impl SimulateOptions {
+    fn output_folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            PathBuf::from("out").join(self.scene.file_stem().unwrap_or("simulation".as_ref()))
+        })
+    }
+
+    fn simulate(&self, scene: &Scene, material: &Material, telling: Telling) -> Result<Simulation, Error> {
+        let bar = StepBar::new(&scene.name, !telling.quiet);
+        let simulation = if self.rest {
+            simulation::to_rest(scene, material, &mut |step| bar.at(step, None))
+        } else {
+            let duration = self.duration.or(scene.duration).ok_or_else(|| {
+                scene.invalid("duration_s", "nothing", "a duration here or by --duration, or --rest")
+            })?;
+            simulation::in_motion(scene, material, duration, &mut |step, steps| bar.at(step, Some(steps)))
+        };
+        bar.finish();
+        simulation
+    }
+}
+
+fn parse_duration(text: &str) -> Result<f64, String> {
+    let seconds: Option<f64> = text.parse().ok();
+    seconds
+        .filter(|seconds| *seconds > 0.0 && seconds.is_finite())
+        .ok_or_else(|| format!("{text}: expected a number of seconds above 0"))
+}

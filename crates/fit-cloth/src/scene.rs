@@ -1,0 +1,172 @@
+//! Scenes: a sheet, what holds it, the air around it, and how its motion is computed. Nothing that a scene does not name is
+//! assembled.
+
+mod file;
+mod hold;
+mod motion;
+mod sheet;
+mod start;
+
+pub use file::Measure;
+pub use hold::Circle;
+pub(crate) use start::normal;
+
+use cloth_fit::error::{Error, Result};
+use cloth_fit::io::TomlFile;
+use cloth_fit::material::Material;
+use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::dynamics;
+use cloth_sim::error::Error as Defect;
+use cloth_sim::load::{Guided, Held};
+use cloth_sim::material::Component;
+use cloth_sim::mesh::Mesh;
+use file::SceneFile;
+use nalgebra::Vector3;
+use std::path::Path;
+
+/// A scene made ready.
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// The sheet at rest, where it lies before anything acts on it.
+    pub mesh: Mesh,
+    /// m/s².
+    pub gravity: Vector3<f64>,
+    /// Components that store energy; `None` for all that the material has.
+    pub components: Option<Vec<Component>>,
+    /// What is held; every hold is a clip, in the order of the file.
+    pub held: Vec<Held>,
+    /// What may move in some directions only.
+    pub guided: Vec<Guided>,
+    /// The circle whose inside a support holds, if there is one and nothing else is held.
+    pub support: Option<Circle>,
+    /// Where the nodes are at the start, 3 each, m.
+    pub start: Vec<f64>,
+    /// What is measured at the end.
+    pub measure: Option<Measure>,
+    /// s; `None` where the scene has no end but rest.
+    pub duration: Option<f64>,
+    /// Shapes kept of a second of motion, 1/s.
+    pub frames_per_second: f64,
+    /// Step, integrator, damping, wind.
+    pub dynamics: dynamics::Settings,
+    file: TomlFile,
+}
+
+impl Scene {
+    /// Reads a scene; files that it names stand beside it.
+    ///
+    /// # Errors
+    /// A file that is no scene, with line and key.
+    pub fn read(path: &Path) -> Result<Self> {
+        let file = TomlFile::read(path)?;
+        let scene: SceneFile = file.value()?;
+        if scene.name.trim().is_empty() {
+            return Err(file.invalid("name", "nothing", "the scene's name"));
+        }
+        let mesh = sheet::mesh(&scene.sheet, path, &file)?;
+        let hold::Holds { held, guided, support } = hold::holds(&scene.held, &mesh, &file)?;
+        let gravity = vector(&file, "gravity_m_s2", scene.gravity_m_s2)?;
+        let positive = |key: &str, value: f64| match value > 0.0 && value.is_finite() {
+            true => Ok(value),
+            false => Err(file.invalid(key, value.to_string(), "a number above 0")),
+        };
+        let duration = scene.duration_s.map(|duration| positive("duration_s", duration)).transpose()?;
+        let step = positive("step_s", scene.step_s)?;
+        let frames_per_second = positive("frames_per_s", scene.frames_per_s)?;
+        let dynamics = motion::settings(step, &scene.solver, &scene.damping, scene.wind.as_ref(), &file)?;
+        let start = start::perturbed(&mesh, &held, &guided, scene.start.perturbation_m, &file)?;
+        if scene.measure == Some(Measure::DrapeCoefficient) && support.is_none() {
+            let expected = "droop, or one [[held]] circle and nothing else: the support of the drape";
+            return Err(file.invalid("measure", "drape-coefficient", expected));
+        }
+        if scene.measure == Some(Measure::Droop) && held.is_empty() {
+            return Err(file.invalid("measure", "droop", "a sheet that is held somewhere"));
+        }
+        Ok(Self {
+            name: scene.name,
+            mesh,
+            gravity,
+            components: scene.components,
+            held,
+            guided,
+            support,
+            start,
+            measure: scene.measure,
+            duration,
+            frames_per_second,
+            dynamics,
+            file,
+        })
+    }
+
+    /// The components of the material that take part.
+    ///
+    /// # Errors
+    /// One that the scene names and the material lacks.
+    pub fn components(&self, material: &Material) -> Result<Vec<Component>> {
+        let Some(components) = &self.components else { return Ok(material.curves.components().collect()) };
+        let missing = components.iter().position(|&component| material.curves.get(component).is_none());
+        match missing {
+            None => Ok(components.clone()),
+            Some(index) => {
+                let found = format!("{}, which {} has no curve for", components[index], material.name);
+                let known: Vec<_> =
+                    material.curves.components().map(|component| component.to_string()).collect();
+                let expected = format!("some of {}", known.join(", "));
+                Err(self.file.invalid(&format!("components[{index}]"), found, expected))
+            }
+        }
+    }
+
+    /// The scene's cloth of a material; at rest something must hold it.
+    ///
+    /// # Errors
+    /// As [`Cloth::new`], with the scene's file and line where they can be told.
+    pub fn cloth(&self, material: &Material, components: &[Component], at_rest: bool) -> Result<Cloth> {
+        let problem = Problem {
+            mesh: &self.mesh,
+            model: material.model,
+            components,
+            areal_density: material.areal_density,
+            gravity: self.gravity,
+            held: &self.held,
+            tied: &[],
+            guided: &self.guided,
+            planar: false,
+        };
+        let cloth = if at_rest { Cloth::new(&problem) } else { Cloth::in_motion(&problem) };
+        cloth.map_err(|defect| self.explain(defect))
+    }
+
+    /// A defect of the mechanics, as bad input where it is one.
+    pub fn explain(&self, defect: Defect) -> Error {
+        match &defect {
+            Defect::Unpinned { .. } => {
+                let expected = "[[held]] nodes in every part, for a shape at rest";
+                self.file.invalid("sheet", defect.to_string(), expected)
+            }
+            Defect::NeedsGrid { .. } => {
+                self.file.invalid("sheet", defect.to_string(), "grid, or another model")
+            }
+            Defect::UnstableStep { limit, .. } => {
+                let expected = format!("at most {limit:.3e} s, or integrator = \"implicit-euler\"");
+                self.file.invalid("step_s", self.dynamics.step.to_string(), expected)
+            }
+            _ => Error::Mechanics { context: self.name.clone(), source: defect },
+        }
+    }
+
+    /// Bad input at a key of the scene.
+    pub fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
+        self.file.invalid(key, found, expected)
+    }
+}
+
+/// Three finite numbers.
+fn vector(file: &TomlFile, key: &str, value: [f64; 3]) -> Result<Vector3<f64>> {
+    if value.iter().all(|component| component.is_finite()) && !file.has(&format!("{key}[3]")) {
+        return Ok(value.into());
+    }
+    Err(file.invalid(key, format!("{value:?}"), "three finite numbers"))
+}

@@ -1,0 +1,95 @@
+//! The sheet of a scene, placed in space.
+
+use super::file::{Axis, DiscFile, GridFile, MeshFile, SheetFile};
+use super::vector;
+use cloth_fit::error::{Error, Result};
+use cloth_fit::io::{TomlFile, YarnAxes, read_mesh};
+use cloth_sim::mesh::{Disc, Grid, Mesh};
+use nalgebra::Vector3;
+use std::path::Path;
+
+/// Two axes count as perpendicular up to this cosine.
+const PERPENDICULAR: f64 = 1e-6;
+
+/// The mesh that the file describes.
+pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<Mesh> {
+    let refuse = |key: &str, error: cloth_sim::error::Error| {
+        file.invalid(key, error.to_string(), "a sheet that can be")
+    };
+    let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
+        (Some(grid), None, None) => of_grid(grid).mesh().map_err(|error| refuse("sheet.grid", error))?,
+        (None, Some(disc), None) => {
+            of_disc(disc, file)?.mesh().map_err(|error| refuse("sheet.disc", error))?
+        }
+        (None, None, Some(mesh)) => {
+            let placed = [("origin_m", sheet.origin_m), ("weft", sheet.weft), ("warp", sheet.warp)];
+            if let Some((key, _)) = placed.into_iter().find(|(_, value)| value.is_some()) {
+                let expected = "nothing: a mesh file says where the sheet lies";
+                return Err(file.invalid(&format!("sheet.{key}"), "a place", expected));
+            }
+            return of_file(mesh, scene, file);
+        }
+        _ => return Err(file.invalid("sheet", "none or several sheets", "one of grid, disc and mesh")),
+    };
+    place(flat, sheet, file)
+}
+
+fn of_grid(grid: &GridFile) -> Grid {
+    let GridFile { width_m: width, height_m: height, nodes: [columns, rows], diagonals } = *grid;
+    Grid { columns, rows, width, height, diagonals }
+}
+
+fn of_disc(disc: &DiscFile, file: &TomlFile) -> Result<Disc> {
+    let DiscFile { radius_m: radius, rings, kept_ring: kept } = *disc;
+    if let Some(ring) = kept.filter(|ring| !(1..=rings).contains(ring)) {
+        return Err(file.invalid("sheet.disc.kept_ring", ring.to_string(), format!("1 to {rings}")));
+    }
+    Ok(Disc { radius, rings, kept })
+}
+
+fn of_file(mesh: &MeshFile, scene: &Path, file: &TomlFile) -> Result<Mesh> {
+    let path = scene.parent().unwrap_or(Path::new("")).join(&mesh.file);
+    let axes = match (mesh.weft, mesh.warp) {
+        (None, None) => None,
+        (Some(weft), Some(warp)) if weft != warp => Some(YarnAxes { weft: unit(weft), warp: unit(warp) }),
+        _ => {
+            return Err(file.invalid(
+                "sheet.mesh",
+                "one axis",
+                "weft and warp along two axes, or vt in the file",
+            ));
+        }
+    };
+    read_mesh(&path, axes)
+}
+
+fn unit(axis: Axis) -> Vector3<f64> {
+    match axis {
+        Axis::X => Vector3::x(),
+        Axis::Y => Vector3::y(),
+        Axis::Z => Vector3::z(),
+    }
+}
+
+/// Material coordinates (u, v) at origin + u·weft + v·warp.
+fn place(flat: Mesh, sheet: &SheetFile, file: &TomlFile) -> Result<Mesh> {
+    let axis = |key: &str, given: Option<[f64; 3]>, default: Vector3<f64>| {
+        let axis = given.map_or(Ok(default), |given| vector(file, key, given))?;
+        let length = axis.norm();
+        if length > 0.0 {
+            return Ok(axis / length);
+        }
+        Err(file.invalid(key, "zero", "a direction"))
+    };
+    let weft = axis("sheet.weft", sheet.weft, Vector3::x())?;
+    let warp = axis("sheet.warp", sheet.warp, Vector3::y())?;
+    if weft.dot(&warp).abs() > PERPENDICULAR {
+        return Err(file.invalid("sheet.warp", format!("{:?}", sheet.warp), "a direction across weft"));
+    }
+    let origin = vector(file, "sheet.origin_m", sheet.origin_m.unwrap_or_default())?;
+    let positions = flat.material.iter().map(|m| origin + m.x * weft + m.y * warp).collect();
+    let grid = flat.grid;
+    let mesh = Mesh::new(positions, flat.material, flat.triangles)
+        .map_err(|source| Error::Mechanics { context: "sheet".into(), source })?;
+    Ok(Mesh { grid, ..mesh })
+}

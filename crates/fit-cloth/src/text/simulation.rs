@@ -1,0 +1,98 @@
+//! What came of a scene.
+
+use super::list;
+use crate::scene::Scene;
+use crate::simulation::{Drape, Droop, End, Simulation};
+use cloth_fit::material::Material;
+use cloth_sim::descent::Descent;
+use std::fmt::Write;
+
+/// What was simulated, its measures and energies, and a verdict.
+pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -> String {
+    let mut text = format!(
+        "{} of {} ({}, {} vertices)\ncomponents: {}\n\n",
+        scene.name,
+        material.name,
+        material.model,
+        scene.mesh.len(),
+        list(&simulation.components)
+    );
+    if let Some(row) = simulation.rows.last() {
+        let energies = row.energies;
+        let _ = writeln!(
+            text,
+            "after {:.3} s, in J: kinetic {:.3e}, elastic {:.3e}, weight {:.3e}; since the start: damping took {:.3e}, the air did {:.3e}, the integrator lost {:.3e}",
+            row.time,
+            energies.kinetic,
+            energies.elastic,
+            energies.weight,
+            energies.damping,
+            energies.wind,
+            energies.numerical
+        );
+    }
+    for (index, force) in simulation.holds.iter().enumerate() {
+        let _ = writeln!(text, "hold {index}: {:.4e}, {:.4e}, {:.4e} N", force.x, force.y, force.z);
+    }
+    text += &simulation.droop.as_ref().map(droop).unwrap_or_default();
+    text += &simulation.drape.as_ref().map(drape).unwrap_or_default();
+    format!("{text}\n{}\n", verdict(simulation))
+}
+
+fn droop(droop: &Droop) -> String {
+    let mut text = format!(
+        "lowest point: {:.2} mm below what holds it, {:.2} mm as laid out",
+        1e3 * droop.depth_m,
+        1e3 * droop.flat_depth_m
+    );
+    if let Some(share) = droop.share {
+        let _ = write!(text, "; droop {:.3} %", 100.0 * share);
+    }
+    if let Some((edge, middle)) = droop.bottom_edge_sinks_m.zip(droop.bottom_middle_sinks_m) {
+        let _ = write!(
+            text,
+            "\nbottom edge: sinks by {:.2} mm on the mean, its middle by {:.2} mm",
+            1e3 * edge,
+            1e3 * middle
+        );
+    }
+    text + "\n"
+}
+
+fn drape(drape: &Drape) -> String {
+    let [least, most] = drape.rim_depth_m;
+    format!(
+        "drape coefficient: {:.2} % (scan lines: ± {:.3} %), {} folds; the rim hangs {:.1} to {:.1} mm below the support\n",
+        100.0 * drape.coefficient,
+        100.0 * drape.coefficient_error,
+        drape.folds,
+        1e3 * least,
+        1e3 * most
+    )
+}
+
+fn verdict(simulation: &Simulation) -> String {
+    match simulation.end {
+        End::Rest(descent) => at_rest(&descent),
+        End::Motion { steps, stopped: Some(step), .. } => format!(
+            "NOT converged: step {step} led to numbers that are not finite; the last good state, after {steps} steps, is the last frame. A shorter step_s may help."
+        ),
+        End::Motion { steps, not_converged: 0, .. } => format!("Converged: all {steps} steps."),
+        End::Motion { steps, not_converged, .. } => format!(
+            "NOT converged: {not_converged} of {steps} steps were not solved to the tolerance. A shorter step_s may help."
+        ),
+    }
+}
+
+fn at_rest(descent: &Descent) -> String {
+    let found = descent.equilibrium;
+    let state = if found.converged() { "At rest, and stable" } else { "NOT converged" };
+    let mut text = format!(
+        "{state}: {} after {} steps of descent; the largest imbalance of a node is {:.1e} N, {:.1e} N are allowed.",
+        found.status, descent.steps, found.imbalance, found.tolerance
+    );
+    if found.escaped {
+        text += " An unstable balance was met and left: another shape is as good.";
+    }
+    text
+}

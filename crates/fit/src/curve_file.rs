@@ -1,0 +1,287 @@
+//! A curve as a table: stress against strain, or moment against curvature, to a curve that a simulation takes.
+//!
+//! ```text
+//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ
+//! bending           curvature_per_m, moment_n        εᵢ = 3 × curvature     kᵢ = Mᵢ/εᵢ      hinges of a regular grid
+//! ```
+//!
+//! Every row with ε > 0 is a control point. The stiffness at zero, which no stress can tell, stands in the column
+//! `stiffness_n_per_m` or `rigidity_n_m`; without it, the first two stiffnesses are extrapolated on a straight line:
+//!
+//! ```text
+//! k₀ = k₁ − ε₁ (k₂ − k₁)/(ε₂ − ε₁),   not below k₁/2 and not above 2 k₁
+//! ```
+
+mod read;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Result};
+use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::material::{Component, Model};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// How far rows below zero may be from what the model makes of the rows above, as a share of the largest stress.
+const DISAGREEMENT: f64 = 0.01;
+/// Strains up to this share of the largest are zero: 201 equidistant rows from below zero meet it to rounding only.
+const ZERO: f64 = 1e-9;
+
+/// What a table is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Stress (N/m) over strain: stretch or shear.
+    Membrane,
+    /// Moment per width (N) over curvature (1/m).
+    Bending,
+}
+
+impl Kind {
+    /// Strain or curvature, secant stiffness, stress or moment, and the band's sides, as they head a file.
+    pub fn columns(self) -> [&'static str; 5] {
+        match self {
+            Self::Membrane => {
+                ["strain", "stiffness_n_per_m", "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"]
+            }
+            Self::Bending => ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"],
+        }
+    }
+
+    /// The kind of a component's table.
+    pub fn of(component: Component) -> Self {
+        if component.is_bending() { Self::Bending } else { Self::Membrane }
+    }
+
+    /// Strain of the model's elements over what the first column holds.
+    fn strain_per_unit(self) -> f64 {
+        match self {
+            Self::Membrane => 1.0,
+            Self::Bending => HINGE_STRAIN_PER_CURVATURE,
+        }
+    }
+}
+
+/// A table of a curve, as it stands in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveFile {
+    /// Stretch and shear, or bending.
+    pub kind: Kind,
+    /// Strains, or curvatures in 1/m; ascending.
+    pub strains: Vec<f64>,
+    /// Stresses in N/m, or moments per width in N; a row each.
+    pub stresses: Vec<f64>,
+    /// Secant stiffnesses in N/m, or flexural rigidities in N·m, where the file has the column.
+    pub stiffnesses: Option<Vec<f64>>,
+    /// Lower and upper side of a band on the stress, each where the file has the column.
+    pub band: [Option<Vec<f64>>; 2],
+    path: PathBuf,
+    lines: Vec<usize>,
+}
+
+impl CurveFile {
+    /// The curve of a component in a model, with a control point at every row from zero on.
+    ///
+    /// Rows below zero are not control points: how stress is read there is the rule `negative`. They must agree with
+    /// it within 1 % of the table's largest stress (a shear table of both sides must be odd). Where such rows exist and
+    /// none is at zero, a control point is put there.
+    ///
+    /// # Errors
+    /// A table of the other kind; bending of springs, whose tables belong to a grid; no row at zero where the table
+    /// starts above it; a stress at zero; fewer than two rows from zero on; a stiffness column that is not the stress
+    /// over the strain; rows below zero that disagree.
+    pub fn curve(
+        &self,
+        component: Component,
+        model: Model,
+        negative: NegativeStrain,
+    ) -> Result<StiffnessCurve> {
+        self.check_component(component, model)?;
+        let [axis, stiffness, stress, ..] = self.kind.columns();
+        let scale = self.kind.strain_per_unit();
+        let zero = ZERO * self.strains.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+        let first = self.strains.partition_point(|&strain| strain <= zero);
+        let below = self.strains.partition_point(|&strain| strain < -zero);
+        let largest = self.largest_stress();
+        if self.strains.len() - first < 1 {
+            return Err(self.refuse(None, axis, "no row above zero", "one row above zero at least"));
+        }
+        if first - below > 1 {
+            let found = format!("{}, as good as the row before", self.strains[below + 1]);
+            return Err(self.refuse(
+                Some(below + 1),
+                axis,
+                found,
+                "rows apart by 1e-9 of the largest at least",
+            ));
+        }
+        let at_zero = (below < first).then_some(below);
+        match at_zero {
+            Some(row) if self.stresses[row].abs() > ZERO * largest => {
+                let found = format!("{} at zero", self.stresses[row]);
+                return Err(self.refuse(
+                    Some(row),
+                    stress,
+                    found,
+                    "0 there: what is not strained is free of stress",
+                ));
+            }
+            None if below == 0 => {
+                let found = format!("{} in the first row", self.strains[0]);
+                return Err(self.refuse(Some(0), axis, found, format!("0 there, with {stress} 0")));
+            }
+            _ => {}
+        }
+        let secants: Vec<f64> = (first..self.strains.len())
+            .map(|row| match &self.stiffnesses {
+                Some(stiffnesses) => self.stated(row, stiffnesses[row], largest),
+                None => Ok(self.stresses[row] / self.strains[row]),
+            })
+            .collect::<Result<_>>()?;
+        let start = match (&self.stiffnesses, at_zero) {
+            (Some(stiffnesses), Some(row)) => stiffnesses[row],
+            _ => extrapolated(&self.strains[first..], &secants),
+        };
+        let strains = std::iter::once(0.0).chain(self.strains[first..].iter().map(|strain| scale * strain));
+        let stiffnesses = std::iter::once(start).chain(secants).map(|k| k / scale).collect();
+        let curve = StiffnessCurve::new(strains.collect(), stiffnesses, negative).map_err(|error| {
+            let row = match error {
+                cloth_sim::error::Error::Curve { point, .. } => {
+                    point.checked_sub(1).map(|point| first + point)
+                }
+                _ => None,
+            };
+            self.refuse(row, stiffness, error.to_string(), "strains apart and finite stiffnesses")
+        })?;
+        self.check_below_zero(&curve, below, largest)?;
+        Ok(curve)
+    }
+
+    /// The same rows and columns with the stresses of another curve; a band keeps its width about the stress.
+    ///
+    /// * `curve` — over the model's strains, as [`CurveFile::curve`] gives it
+    ///
+    /// Without a stiffness column one is added: the stress alone does not tell the stiffness at zero, and the file would
+    /// be read as another curve.
+    pub fn with_curve(&self, curve: &StiffnessCurve) -> Self {
+        let scale = self.kind.strain_per_unit();
+        let stress: Vec<f64> = self.strains.iter().map(|&strain| curve.stress(scale * strain)).collect();
+        let stiffness = |(&strain, stress): (&f64, &f64)| match curve
+            .strains()
+            .binary_search_by(|knot| knot.total_cmp(&(scale * strain)))
+        {
+            Ok(point) => scale * curve.stiffnesses()[point],
+            Err(_) if strain == 0.0 => scale * curve.stiffnesses()[0],
+            Err(_) => stress / strain,
+        };
+        let shift = |side: &Option<Vec<f64>>| {
+            let rows = side.as_ref()?.iter().zip(&stress).zip(&self.stresses);
+            Some(rows.map(|((side, new), old)| side + (new - old)).collect())
+        };
+        Self {
+            stiffnesses: Some(self.strains.iter().zip(&stress).map(stiffness).collect()),
+            band: [shift(&self.band[0]), shift(&self.band[1])],
+            stresses: stress,
+            ..self.clone()
+        }
+    }
+
+    /// The file's text, with the columns that are there.
+    pub fn to_csv(&self) -> String {
+        let [axis, stiffness, stress, low, high] = self.kind.columns();
+        let columns: Vec<(&str, &[f64])> = [
+            (axis, Some(&self.strains)),
+            (stiffness, self.stiffnesses.as_ref()),
+            (stress, Some(&self.stresses)),
+            (low, self.band[0].as_ref()),
+            (high, self.band[1].as_ref()),
+        ]
+        .into_iter()
+        .filter_map(|(name, values)| Some((name, &values?[..])))
+        .collect();
+        let mut text = columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",") + "\n";
+        for row in 0..self.strains.len() {
+            for (column, (_, values)) in columns.iter().enumerate() {
+                let _ = write!(text, "{}{}", if column == 0 { "" } else { "," }, values[row]);
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    fn largest_stress(&self) -> f64 {
+        self.stresses.iter().fold(0.0, |largest: f64, stress| largest.max(stress.abs()))
+    }
+
+    fn check_component(&self, component: Component, model: Model) -> Result<()> {
+        if Kind::of(component) != self.kind {
+            let [axis, _, stress, ..] = Kind::of(component).columns();
+            let [found, ..] = self.kind.columns();
+            let expected = format!("{axis} and {stress}, as {component} has");
+            return Err(self.refuse(None, "header", format!("a column {found}"), expected));
+        }
+        if component.is_bending() && model == Model::Springs {
+            return Err(self.refuse(
+                None,
+                "model",
+                "moments over curvature for the springs of a grid that the file does not name",
+                "a material.json, whose control points are over the springs' own strain; or another model",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The stiffness that a row states, if it is the stress over the strain.
+    fn stated(&self, row: usize, stiffness: f64, largest: f64) -> Result<f64> {
+        let product = stiffness * self.strains[row];
+        if !((product - self.stresses[row]).abs() <= 1e-6 * largest) {
+            let [axis, column, stress, ..] = self.kind.columns();
+            let found = format!("{stiffness}, which times {axis} is {product}");
+            let expected = format!("{stress} {} (leave the column out after an edit)", self.stresses[row]);
+            return Err(self.refuse(Some(row), column, found, expected));
+        }
+        Ok(stiffness)
+    }
+
+    fn check_below_zero(&self, curve: &StiffnessCurve, below: usize, largest: f64) -> Result<()> {
+        let [_, _, stress, ..] = self.kind.columns();
+        for row in 0..below {
+            let expected = curve.stress(self.kind.strain_per_unit() * self.strains[row]);
+            if !((self.stresses[row] - expected).abs() <= DISAGREEMENT * largest) {
+                let found = format!("{} at {}", self.stresses[row], self.strains[row]);
+                let rule = match curve.negative() {
+                    NegativeStrain::Odd => "an odd curve, as the rows above zero say",
+                    NegativeStrain::Linear | NegativeStrain::Green => {
+                        "compression with the stiffness at zero"
+                    }
+                    NegativeStrain::Slack => "no stress in compression",
+                };
+                let expected = format!(
+                    "{expected:.6} within 1 % of the largest: {rule} (or leave the rows below zero out)"
+                );
+                return Err(self.refuse(Some(row), stress, found, expected));
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse(
+        &self,
+        row: Option<usize>,
+        field: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Error {
+        let line = row.and_then(|row| self.lines.get(row).copied());
+        Error::input(&self.path, line, field, found, expected)
+    }
+}
+
+/// The stiffness at zero from the first two above it.
+fn extrapolated(strains: &[f64], stiffnesses: &[f64]) -> f64 {
+    let [k1, k2] = [stiffnesses[0], stiffnesses[stiffnesses.len().min(2) - 1]];
+    let [e1, e2] = [strains[0], strains[strains.len().min(2) - 1]];
+    let straight = if e2 > e1 { k1 - e1 * (k2 - k1) / (e2 - e1) } else { k1 };
+    let [low, high] = [0.5 * k1, 2.0 * k1];
+    straight.clamp(low.min(high), low.max(high))
+}

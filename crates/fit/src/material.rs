@@ -1,0 +1,148 @@
+//! A material to simulate: that of a fit, a known fabric, or one written by hand.
+
+mod hand_written;
+
+use crate::error::{Error, Result};
+use crate::io::TomlFile;
+use crate::material_file::MaterialFile;
+use crate::rig::KnownFabric;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::{Component, Compression, Curves, Model};
+use hand_written::HandWritten;
+use std::path::Path;
+
+/// What a simulation must know of a fabric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Its name.
+    pub name: String,
+    /// kg/m².
+    pub areal_density: f64,
+    /// The model whose strains the curves are over.
+    pub model: Model,
+    /// What weft and warp do under compression.
+    pub compression: Compression,
+    /// The curves; a component without one stores no energy.
+    pub curves: Curves,
+}
+
+impl Material {
+    /// Reads `material.json` of a fit, a fabric of the virtual rig, or a material written by hand: docs/formats.md.
+    ///
+    /// # Errors
+    /// A file that is none of these, with line and key; curves that cannot be.
+    pub fn read(path: &Path) -> Result<Self> {
+        if path.extension().is_some_and(|ending| ending == "json") {
+            let file = MaterialFile::read(path)?;
+            let curves = file.curves()?;
+            let MaterialFile { model, compression, fabric, .. } = file;
+            return Ok(Self {
+                name: fabric.name,
+                areal_density: fabric.areal_density_kg_m2,
+                model,
+                compression,
+                curves,
+            });
+        }
+        let file = TomlFile::read(path)?;
+        // Only the rig must know how far a test shall pull.
+        if file.has("largest_extension") {
+            let fabric = KnownFabric::of(&file)?;
+            let curves = fabric.curves()?;
+            return Ok(Self {
+                name: fabric.name,
+                areal_density: fabric.areal_density_kg_m2,
+                model: fabric.model,
+                compression: Compression::ZeroStrain,
+                curves,
+            });
+        }
+        file.value::<HandWritten>()?.material(path, &file)
+    }
+
+    /// The same material with another rule for compression.
+    ///
+    /// # Errors
+    /// None that the curves did not have before.
+    pub fn with_compression(self, compression: Compression) -> Result<Self> {
+        let Self { name, areal_density, model, curves, .. } = self;
+        let curve = |component: Component| {
+            let curve = curves.get(component)?;
+            let negative = model.negative_strain(component, compression);
+            let curve = StiffnessCurve::new(curve.strains().to_vec(), curve.stiffnesses().to_vec(), negative);
+            let context = || format!("{name}, {component}");
+            Some(match curve {
+                Ok(curve) => Ok((component, curve)),
+                Err(source) => Err(Error::Mechanics { context: context(), source }),
+            })
+        };
+        let curves = Component::ALL.into_iter().filter_map(curve).collect::<Result<Curves>>()?;
+        Ok(Self { name, areal_density, model, compression, curves })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Material> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cloth.toml");
+        std::fs::write(&path, text).unwrap();
+        Material::read(&path)
+    }
+
+    const SHEAR: &str = "[curves.shear]\nstiffness_n_per_m = 1\n";
+
+    const HEAD: &str = "name = \"cloth\"\nareal_density_kg_m2 = 0.2\nmodel = \"stvk\"\n";
+
+    #[test]
+    fn constants_and_control_points_and_nothing_for_what_is_not_named() {
+        let curves = "[curves.stretch-weft]\nstiffness_n_per_m = 800\n\
+                      [curves.bend-weft]\nrigidity_n_m = 3e-5\n\
+                      [curves.bend-warp]\ncurvature_per_m = [0.0, 20.0]\nrigidity_n_m = [3e-5, 1.5e-5]\n";
+        let cloth = read(&format!("{HEAD}{curves}")).unwrap();
+        assert_eq!((cloth.model, cloth.compression), (Model::Stvk, Compression::ZeroStrain));
+        let of = |component| cloth.curves.get(component);
+        assert_eq!(of(Component::StretchWeft).unwrap().stiffnesses(), [800.0]);
+        // Three times the curvature is the hinges' strain, a third of the rigidity their stiffness.
+        let near = |found: &[f64], expected: &[f64]| {
+            found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-18)
+        };
+        assert!(near(of(Component::BendWeft).unwrap().stiffnesses(), &[1e-5]));
+        assert_eq!(of(Component::BendWarp).unwrap().strains(), [0.0, 60.0]);
+        assert!(near(of(Component::BendWarp).unwrap().stiffnesses(), &[1e-5, 0.5e-5]));
+        assert!(of(Component::Shear).is_none() && of(Component::StretchWarp).is_none());
+        let slack = cloth.clone().with_compression(Compression::None).unwrap();
+        assert_eq!(slack.curves.get(Component::StretchWeft).unwrap().stress(-0.1), 0.0);
+        assert!(of(Component::StretchWeft).unwrap().stress(-0.1) < 0.0);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        let refused = |text: &str, line: usize, words: &str| {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains(&format!("cloth.toml:{line} ")) && error.contains(words), "{error}");
+        };
+        let with = |text: &str| format!("{HEAD}{text}");
+        refused(&with("[curves.shear]\nstiffnes_n_per_m = 1\n"), 5, "stiffnes_n_per_m");
+        refused(&with("[curves.shaer]\nstiffness_n_per_m = 1\n"), 4, "shaer");
+        refused(&with("[curves.shear]\nrigidity_n_m = 1\n"), 5, "stiffness_n_per_m");
+        refused(&with("[curves.bend-warp]\nstiffness_n_per_m = 1\n"), 5, "rigidity_n_m");
+        refused(&with("[curves.shear]\nstrain = [0.0, 0.1]\nstiffness_n_per_m = [1.0]\n"), 5, "2 strains");
+        refused(&with("[curves.shear]\nstrain = [0.1, 0.0]\nstiffness_n_per_m = [1.0, 2.0]\n"), 4, "shear");
+        refused(&with("[curves.shear]\nstiffness_n_per_m = nan\n"), 5, "finite");
+        refused(&with("[curves.shear]\nstiffness_n_per_m = \"soft\"\n"), 5, "a number");
+        refused(&with(SHEAR).replace("0.2", "200"), 2, "0 and at most 10");
+        let error = read(HEAD).unwrap_err().to_string();
+        assert!(error.contains("curves"), "{error}");
+    }
+
+    #[test]
+    fn fabrics_of_the_rig_are_materials_too() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/fabrics/cotton-denim.toml");
+        let denim = Material::read(&path).unwrap();
+        assert_eq!((denim.name.as_str(), denim.areal_density), ("cotton-denim", 0.46));
+        assert_eq!(denim.curves.components().count(), 6);
+    }
+}

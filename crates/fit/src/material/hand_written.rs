@@ -1,0 +1,151 @@
+//! A material's TOML file, as a person writes it.
+
+use super::Material;
+use crate::error::{Error, Result};
+use crate::io::TomlFile;
+use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::{Component, Compression, Curves, Model};
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, de};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+/// The file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HandWritten {
+    name: String,
+    areal_density_kg_m2: f64,
+    model: Model,
+    #[serde(default)]
+    compression: Compression,
+    #[serde(default, rename = "notes")]
+    _notes: Option<String>,
+    curves: BTreeMap<Component, Points>,
+}
+
+/// A curve: a constant, or control points.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Points {
+    #[serde(default)]
+    strain: Option<Vec<f64>>,
+    #[serde(default)]
+    stiffness_n_per_m: Option<Numbers>,
+    #[serde(default)]
+    curvature_per_m: Option<Vec<f64>>,
+    #[serde(default)]
+    rigidity_n_m: Option<Numbers>,
+}
+
+impl HandWritten {
+    /// The material that the file describes.
+    pub(super) fn material(self, path: &Path, file: &TomlFile) -> Result<Material> {
+        let Self { name, areal_density_kg_m2: density, model, compression, curves, .. } = self;
+        if name.trim().is_empty() {
+            return Err(file.invalid("name", "nothing", "the material's name"));
+        }
+        if !(density > 0.0 && density <= 10.0) {
+            let expected = "kilograms per square metre, above 0 and at most 10";
+            return Err(file.invalid("areal_density_kg_m2", density.to_string(), expected));
+        }
+        if curves.is_empty() {
+            return Err(Error::input(path, None, "curves", "nothing", "one component's curve at least"));
+        }
+        let curves = curves.into_iter().map(|(component, points)| {
+            let negative = model.negative_strain(component, compression);
+            let (strains, stiffnesses) = points.values(model, component, file)?;
+            let key = format!("curves.{component}");
+            let curve = StiffnessCurve::new(strains, stiffnesses, negative)
+                .map_err(|error| file.invalid(&key, error.to_string(), CURVE))?;
+            Ok((component, curve))
+        });
+        let curves = curves.collect::<Result<Curves>>()?;
+        Ok(Material { name, areal_density: density, model, compression, curves })
+    }
+}
+
+const CURVE: &str = "finite values at ascending places, the first at 0";
+
+impl Points {
+    /// Strains and stiffnesses of the model's own.
+    fn values(&self, model: Model, component: Component, file: &TomlFile) -> Result<(Vec<f64>, Vec<f64>)> {
+        // Springs that bend have a strain of their own, without unit, and no curvature that would not depend on the mesh.
+        let hinge = component.is_bending() && model != Model::Springs;
+        let (places, values) = ((&self.strain, "strain"), (&self.stiffness_n_per_m, "stiffness_n_per_m"));
+        let (physical_places, physical_values) =
+            ((&self.curvature_per_m, "curvature_per_m"), (&self.rigidity_n_m, "rigidity_n_m"));
+        let (places, values, other_places, other_values) = match hinge {
+            true => (physical_places, physical_values, places, values),
+            false => (places, values, physical_places, physical_values),
+        };
+        let key = |name: &str| format!("curves.{component}.{name}");
+        for (given, name, instead) in [
+            (other_places.0.is_some(), other_places.1, places.1),
+            (other_values.0.is_some(), other_values.1, values.1),
+        ] {
+            if given {
+                return Err(file.invalid(&key(name), name, format!("{instead}, for {component} of {model}")));
+            }
+        }
+        let Some(Numbers(stiffnesses)) = values.0 else {
+            return Err(file.invalid(&format!("curves.{component}"), "nothing", values.1));
+        };
+        let strains = match places.0 {
+            Some(strains) => strains.clone(),
+            None if stiffnesses.len() == 1 => vec![0.0],
+            None => {
+                let found = format!("nothing for {} values", stiffnesses.len());
+                return Err(file.invalid(&key(values.1), found, places.1));
+            }
+        };
+        if strains.len() != stiffnesses.len() {
+            let found = format!("{} {}s for {} values", strains.len(), places.1, stiffnesses.len());
+            return Err(file.invalid(&key(places.1), found, "one for each"));
+        }
+        if stiffnesses.iter().any(|value| !value.is_finite()) {
+            return Err(file.invalid(&key(values.1), "a value that is not finite", "finite numbers"));
+        }
+        let scale = if hinge { HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
+        let scaled = |values: &[f64], by: f64| values.iter().map(|value| value * by).collect();
+        Ok((scaled(&strains, scale), scaled(stiffnesses, 1.0 / scale)))
+    }
+}
+
+/// A number, or a list of numbers.
+#[derive(Debug)]
+struct Numbers(Vec<f64>);
+
+impl<'de> Deserialize<'de> for Numbers {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(NumbersVisitor)
+    }
+}
+
+struct NumbersVisitor;
+
+impl<'de> Visitor<'de> for NumbersVisitor {
+    type Value = Numbers;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or a list of numbers")
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> std::result::Result<Numbers, E> {
+        Ok(Numbers(vec![value]))
+    }
+
+    fn visit_i64<E: de::Error>(self, value: i64) -> std::result::Result<Numbers, E> {
+        Ok(Numbers(vec![value as f64]))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> std::result::Result<Numbers, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = sequence.next_element()? {
+            values.push(value);
+        }
+        Ok(Numbers(values))
+    }
+}

@@ -1,0 +1,279 @@
+//! Whether a curve can be simulated: what is wrong with it, where, and what that would do.
+//!
+//! ```text
+//! k(ε) < 0                          negative stiffness
+//! σ′(ε) < κ                         low tangent           κ = 10⁻³ of the largest secant stiffness
+//! max σ′ > 10⁴ min σ′               tangent ratio
+//! Tₙ < κ                            end slope: stress beyond the last control point
+//! max k outside what cloth has      magnitude
+//! ε outside what was measured       unvisited range
+//! ```
+//!
+//! k and σ′ = k + εk′ are cubics on every segment: intervals are isolated by halving their Bernstein coefficients,
+//! extremes are computed from the roots of the derivative.
+
+use super::StiffnessCurve;
+use super::polynomial::{Cubic, join};
+use std::fmt;
+
+/// κ, the least tangent allowed, as a share of the largest secant stiffness.
+pub const LEAST_TANGENT: f64 = 1e-3;
+/// The largest ratio of two tangents of one curve.
+pub const TANGENT_RATIO: f64 = 1e4;
+/// Between which a membrane's largest secant stiffness is plausible, N/m: far below a knit, far above glass yarns.
+pub const MEMBRANE_STIFFNESS: [f64; 2] = [1e-1, 1e6];
+/// Between which the largest stiffness of a bending curve of hinges is plausible, N·m.
+pub const BENDING_STIFFNESS: [f64; 2] = [1e-9, 1e-2];
+
+/// A limit is passed only by more than this share of it: fits and repairs rest on limits, to rounding.
+const ROUNDING: f64 = 1e-6;
+/// Of the range of the control points: what was visited may end by so little before it.
+const NEARLY_ALL: f64 = 0.01;
+
+/// What is known of a curve besides its control points.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Context {
+    /// Between which its largest secant stiffness is plausible, if that is to be judged.
+    pub magnitude: Option<[f64; 2]>,
+    /// The strains that a measurement visited, if there was one.
+    pub visited: Option<[f64; 2]>,
+}
+
+/// What can be found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// k < 0.
+    NegativeStiffness,
+    /// σ′ < κ.
+    LowTangent,
+    /// max σ′ / min σ′ > 10⁴.
+    TangentRatio,
+    /// σ′ < κ at the last control point, and so for ever beyond it.
+    EndSlope,
+    /// No cloth is so stiff or so soft.
+    Magnitude,
+    /// No measurement was made there.
+    Unvisited,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::NegativeStiffness => "negative-stiffness",
+            Self::LowTangent => "low-tangent",
+            Self::TangentRatio => "tangent-ratio",
+            Self::EndSlope => "end-slope",
+            Self::Magnitude => "magnitude",
+            Self::Unvisited => "unvisited",
+        })
+    }
+}
+
+/// How bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// Not to be simulated as it is.
+    Defect,
+    /// To be known.
+    Note,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Defect => "defect",
+            Self::Note => "note",
+        })
+    }
+}
+
+/// Something that is wrong with a curve, or should be known of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finding {
+    /// What.
+    pub kind: Kind,
+    /// Where, in the curve's own strain; an infinite end goes on for ever.
+    pub strains: [f64; 2],
+    /// The worst value there: stiffness, tangent, ratio; share of the range for what was not visited.
+    pub value: f64,
+    /// What it should not pass.
+    pub limit: f64,
+}
+
+impl Finding {
+    /// A defect or a note.
+    pub fn severity(&self) -> Severity {
+        match self.kind {
+            // Energy without a minimum, or equilibria that jump: no solver and no time step repairs that.
+            Kind::NegativeStiffness | Kind::LowTangent | Kind::EndSlope => Severity::Defect,
+            // Stable, but the stiffest strain sets the step of all.
+            Kind::TangentRatio => Severity::Defect,
+            // Stable too, but a factor of a thousand is a wrong unit, and the result would be another cloth.
+            Kind::Magnitude => Severity::Defect,
+            // Every curve is extrapolated somewhere; that harms no solver.
+            Kind::Unvisited => Severity::Note,
+        }
+    }
+
+    /// True if the curve can go wrong in a simulation because of its shape, whatever its unit.
+    pub fn is_unstable(&self) -> bool {
+        self.severity() == Severity::Defect && self.kind != Kind::Magnitude
+    }
+
+    /// What it would do in a simulation.
+    pub fn consequence(&self) -> &'static str {
+        match self.kind {
+            Kind::NegativeStiffness => {
+                "the stress has the wrong sign: what is strained is driven further, and the cloth tears itself apart"
+            }
+            Kind::LowTangent if self.value < 0.0 => {
+                "stress falls as strain grows: neighbours share a load unevenly, strain runs to the end of the interval at a jump"
+            }
+            Kind::LowTangent => {
+                "stress hardly grows: strain drifts through the interval and solves converge slowly"
+            }
+            Kind::TangentRatio => {
+                "the stiffest strain dictates the time step, and matrices are ill-conditioned when both ends are visited"
+            }
+            Kind::EndSlope if self.value < 0.0 => {
+                "beyond the last control point stress falls for ever: what is strained so far is lost"
+            }
+            Kind::EndSlope => "beyond the last control point hardly anything resists more strain",
+            Kind::Magnitude if self.value == 0.0 => "it has no stiffness at all: nothing resists this strain",
+            Kind::Magnitude if self.value < self.limit => {
+                "far too soft for a cloth, probably another unit: it hangs like nothing, or stretches without end"
+            }
+            Kind::Magnitude => "far too stiff for a cloth, probably another unit: time steps shrink with it",
+            Kind::Unvisited => "nothing was measured there: the curve is a guess",
+        }
+    }
+}
+
+/// The largest and least values that the check compares.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// Largest secant stiffness k from zero to the last control point.
+    pub largest_stiffness: f64,
+    /// Least tangent σ′ there.
+    pub least_tangent: f64,
+    /// Largest tangent σ′ there.
+    pub largest_tangent: f64,
+}
+
+/// The extremes of a curve between zero and its last control point.
+pub fn extremes(curve: &StiffnessCurve) -> Extremes {
+    let start = curve.stiffnesses()[0];
+    let mut extremes = Extremes { largest_stiffness: start, least_tangent: start, largest_tangent: start };
+    for Piece { stiffness, tangent, .. } in pieces(curve) {
+        extremes.largest_stiffness = extremes.largest_stiffness.max(stiffness.at(stiffness.extremes()[1]));
+        let [least, greatest] = tangent.extremes().map(|u| tangent.at(u));
+        extremes.least_tangent = extremes.least_tangent.min(least);
+        extremes.largest_tangent = extremes.largest_tangent.max(greatest);
+    }
+    extremes
+}
+
+/// All that is wrong with a curve or should be known of it, the worst first.
+pub fn check(curve: &StiffnessCurve, context: &Context) -> Vec<Finding> {
+    let Extremes { largest_stiffness, least_tangent, largest_tangent } = extremes(curve);
+    let last = curve.strains()[curve.len() - 1];
+    // Of a curve that is nowhere positive there is no scale.
+    let least_allowed = LEAST_TANGENT * largest_stiffness.max(0.0);
+    let low = least_allowed * (1.0 - ROUNDING);
+    let mut findings = intervals(curve, Kind::NegativeStiffness, 0.0, 0.0);
+    findings.extend(intervals(curve, Kind::LowTangent, low, least_allowed));
+    if least_tangent > 0.0 && largest_tangent > TANGENT_RATIO * (1.0 + ROUNDING) * least_tangent {
+        let value = largest_tangent / least_tangent;
+        findings.push(Finding {
+            kind: Kind::TangentRatio,
+            strains: [0.0, last],
+            value,
+            limit: TANGENT_RATIO,
+        });
+    }
+    let end = curve.response(last).tangent;
+    if end < low {
+        let strains = [last, f64::INFINITY];
+        findings.push(Finding { kind: Kind::EndSlope, strains, value: end, limit: least_allowed });
+    }
+    findings.extend(magnitude(largest_stiffness, last, context.magnitude));
+    findings.extend(unvisited(last, context.visited));
+    findings
+}
+
+/// Where stiffness or tangent is below a limit.
+fn intervals(curve: &StiffnessCurve, kind: Kind, below: f64, limit: f64) -> Vec<Finding> {
+    let of = |piece: &Piece| if kind == Kind::NegativeStiffness { piece.stiffness } else { piece.tangent };
+    let mut found = Vec::new();
+    let mut worst = Vec::new();
+    for piece in pieces(curve) {
+        let cubic = of(&piece);
+        for [low, high] in cubic.below(below) {
+            // Neighbouring pieces share their knot to the bit.
+            let strains = [piece.strain(low), piece.strain(high)];
+            let least = cubic.extremes()[0].clamp(low, high);
+            let value = [low, least, high].into_iter().map(|u| cubic.at(u)).fold(f64::INFINITY, f64::min);
+            let before = found.len();
+            join(&mut found, strains);
+            match worst.last_mut() {
+                Some(last) if found.len() == before => *last = f64::min(*last, value),
+                _ => worst.push(value),
+            }
+        }
+    }
+    if curve.len() == 1 && curve.stiffnesses()[0] < below {
+        found.push([0.0, f64::INFINITY]);
+        worst.push(curve.stiffnesses()[0]);
+    }
+    found.into_iter().zip(worst).map(|(strains, value)| Finding { kind, strains, value, limit }).collect()
+}
+
+fn magnitude(largest: f64, last: f64, plausible: Option<[f64; 2]>) -> Option<Finding> {
+    let [low, high] = plausible?;
+    let limit = match largest {
+        largest if !(largest >= low) => low,
+        largest if largest > high => high,
+        _ => return None,
+    };
+    Some(Finding { kind: Kind::Magnitude, strains: [0.0, last], value: largest, limit })
+}
+
+fn unvisited(last: f64, visited: Option<[f64; 2]>) -> Vec<Finding> {
+    let Some([low, high]) = visited else { return Vec::new() };
+    let gaps = [[0.0, low.min(last)], [high.max(0.0), last]];
+    let gap = |[from, to]: [f64; 2]| {
+        let finding =
+            Finding { kind: Kind::Unvisited, strains: [from, to], value: (to - from) / last, limit: 0.0 };
+        (to - from > NEARLY_ALL * last).then_some(finding)
+    };
+    gaps.into_iter().filter_map(gap).collect()
+}
+
+/// A segment of a curve with u = (ε − start)/width.
+struct Piece {
+    start: f64,
+    end: f64,
+    stiffness: Cubic,
+    tangent: Cubic,
+}
+
+impl Piece {
+    fn strain(&self, u: f64) -> f64 {
+        if u == 1.0 { self.end } else { self.start + u * (self.end - self.start) }
+    }
+}
+
+fn pieces(curve: &StiffnessCurve) -> impl Iterator<Item = Piece> + '_ {
+    curve.segments.iter().zip(curve.strains.windows(2)).map(|(segment, ends)| {
+        let ([a, b, c, d], e) = (segment.coefficients, segment.start);
+        let h = ends[1] - ends[0];
+        // (εk)′ = k + εk′ with ε = e + t.
+        let tangent = [a + e * b, 2.0 * (b + e * c), 3.0 * (c + e * d), 4.0 * d];
+        let powers = [1.0, h, h * h, h * h * h];
+        let scaled = |coefficients: [f64; 4]| Cubic(std::array::from_fn(|i| coefficients[i] * powers[i]));
+        Piece { start: ends[0], end: ends[1], stiffness: scaled([a, b, c, d]), tangent: scaled(tangent) }
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,128 @@
+//! From any shape to a shape at rest: the cloth sinks without momentum, and the end is an equilibrium.
+//!
+//! ```text
+//! minimise over x′    E(x′) + Σ m |x′ − x|² / (2 h²)        h grows from step to step, x′ is the next x
+//! ```
+//!
+//! Every step is one of implicit Euler from a standstill: the mass keeps it well posed where the cloth is slack, flat or
+//! folding, and the energy falls in each. The way down hardly depends on the mesh, where Newton's method from a flat sheet
+//! lands in any of many folded equilibria.
+//!
+//! Source: the proximal point method, Rockafellar 1976, in the metric of the masses.
+
+use crate::cloth::Cloth;
+use crate::dynamics::{self, Integrator, LinearSolver, Motion, Newton};
+use crate::equilibrium::{self, Equilibrium, Solver};
+use crate::error::Result;
+use crate::material::Curves;
+
+/// How a cloth is let down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// First step, s: in it the cloth falls by about half g h²; default 0.01.
+    pub step: f64,
+    /// The factor from a step to the next where that was easy; default 1.25.
+    pub growth: f64,
+    /// Most steps; default 200.
+    pub max_steps: usize,
+    /// The end of it: a solve for the equilibrium itself.
+    pub equilibrium: equilibrium::Settings,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let equilibrium = equilibrium::Settings::default();
+        Self { step: 0.01, growth: 1.25, max_steps: 200, equilibrium }
+    }
+}
+
+/// How a descent ended.
+#[must_use]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Descent {
+    /// The equilibrium at its end, or why there is none.
+    pub equilibrium: Equilibrium,
+    /// Steps taken.
+    pub steps: usize,
+    /// How far the node that moves most moved in the solve after the last step, m.
+    pub last_way: f64,
+}
+
+/// Steps of fewer iterations were easy.
+const EASY: usize = 12;
+
+/// Steps are solved to this share of the typical force at a node: only their end counts.
+const TOLERANCE: f64 = 1e-3;
+
+/// A step that moves every node by less than this share of the mean edge comes before the last solve.
+const NEAR: f64 = 1e-3;
+
+/// The shortest step, as a share of the first.
+const SHORTEST: f64 = 1e-4;
+
+/// Lets a cloth down from a shape, which is replaced by the one at rest.
+///
+/// A step that cannot be solved is halved. The steps end when they hardly move the cloth; a solve for the equilibrium
+/// follows, and from where that fails further steps.
+///
+/// * `x` — 3 stacked coordinates a node, m; held nodes at their places
+/// * `watch` — is told the number of each step and how far it moved the node that moves most, m
+///
+/// # Errors
+/// A setting or a position that is not finite or out of its range; cloth without mass.
+pub fn descend(
+    cloth: &Cloth,
+    curves: &Curves,
+    x: &mut [f64],
+    settings: &Settings,
+    watch: &mut dyn FnMut(usize, f64),
+) -> Result<Descent> {
+    let mut solver = Solver::new(cloth);
+    let (mut length, mut near) = (settings.step, NEAR * cloth.mean_edge());
+    let mut steps = 0;
+    loop {
+        let mut way = f64::INFINITY;
+        while steps < settings.max_steps && way > near && length > SHORTEST * settings.step {
+            let mut motion = Motion::new(cloth, curves, x.to_vec(), &still(length))?;
+            let step = motion.step();
+            steps += 1;
+            if step.status == dynamics::Status::NotFinite {
+                length *= 0.5;
+                continue;
+            }
+            way = greatest_way(x, motion.positions());
+            x.copy_from_slice(motion.positions());
+            watch(steps, way);
+            if step.status == dynamics::Status::NotConverged {
+                length *= 0.5;
+                way = f64::INFINITY;
+            } else if step.newton_iterations < EASY {
+                length *= settings.growth;
+            }
+        }
+        let before = x.to_vec();
+        let equilibrium = solver.solve(curves, x, &settings.equilibrium);
+        let last_way = greatest_way(&before, x);
+        if equilibrium.converged() || steps >= settings.max_steps || length <= SHORTEST * settings.step {
+            return Ok(Descent { equilibrium, steps, last_way });
+        }
+        // What the solve has made of it is no better start than where the steps ended.
+        x.copy_from_slice(&before);
+        near *= 0.1;
+    }
+}
+
+/// One step from a standstill.
+fn still(step: f64) -> dynamics::Settings {
+    let newton = Newton::Converged { tolerance: TOLERANCE };
+    let integrator = Integrator::ImplicitEuler { newton, linear: LinearSolver::Direct };
+    dynamics::Settings { step, integrator, ..dynamics::Settings::default() }
+}
+
+fn greatest_way(from: &[f64], to: &[f64]) -> f64 {
+    let squares = from
+        .chunks_exact(3)
+        .zip(to.chunks_exact(3))
+        .map(|(from, to)| from.iter().zip(to).map(|(from, to)| (to - from).powi(2)).sum::<f64>());
+    squares.fold(0.0, f64::max).sqrt()
+}
