@@ -4,6 +4,8 @@
 pub mod cantilever;
 #[path = "support/elastica.rs"]
 pub mod elastica;
+#[path = "support/hang.rs"]
+pub mod hang;
 #[path = "support/own_mesh.rs"]
 pub mod own_mesh;
 #[path = "support/picture_frame.rs"]

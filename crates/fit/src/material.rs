@@ -119,6 +119,22 @@ mod tests {
     }
 
     #[test]
+    fn a_curve_may_stand_in_a_table_beside_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let [table, path] = ["shear.csv", "cloth.toml"].map(|name| folder.path().join(name));
+        std::fs::write(table, "strain,stress_n_per_m\n0,0\n0.1,3\n0.2,6\n").unwrap();
+        let write = |curve: &str| std::fs::write(&path, format!("{HEAD}[curves.shear]\n{curve}")).unwrap();
+        write("file = \"shear.csv\"\n");
+        let cloth = Material::read(&path).unwrap();
+        assert!((cloth.curves.get(Component::Shear).unwrap().stress(-0.15) + 4.5).abs() < 1e-12);
+        write("file = \"shear.csv\"\nstiffness_n_per_m = 3\n");
+        let error = Material::read(&path).unwrap_err().to_string();
+        assert!(error.contains("cloth.toml:6 ") && error.contains("beside file"), "{error}");
+        write("file = \"nothing.csv\"\n");
+        assert!(Material::read(&path).unwrap_err().to_string().contains("nothing.csv"));
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_line() {
         let refused = |text: &str, line: usize, words: &str| {
             let error = read(text).unwrap_err().to_string();

@@ -54,8 +54,13 @@ const EASY: usize = 12;
 /// Steps are solved to this share of the typical force at a node: only their end counts.
 const TOLERANCE: f64 = 1e-3;
 
-/// A step that moves every node by less than this share of the mean edge comes before the last solve.
+/// The last solve comes after a step that moves every node by less than this share of the mean edge, and whose pull has
+/// fallen to this share of the strongest one.
 const NEAR: f64 = 1e-3;
+const WEAK: f64 = 1e-2;
+
+/// A step that moves every node by less than this share of the mean edge is none.
+const NOTHING: f64 = 1e-9;
 
 /// The shortest step, as a share of the first.
 const SHORTEST: f64 = 1e-4;
@@ -79,10 +84,10 @@ pub fn descend(
 ) -> Result<Descent> {
     let mut solver = Solver::new(cloth);
     let (mut length, mut near) = (settings.step, NEAR * cloth.mean_edge());
-    let mut steps = 0;
+    let (mut steps, mut strongest) = (0, 0.0f64);
     loop {
-        let mut way = f64::INFINITY;
-        while steps < settings.max_steps && way > near && length > SHORTEST * settings.step {
+        let mut going = true;
+        while steps < settings.max_steps && going && length > SHORTEST * settings.step {
             let mut motion = Motion::new(cloth, curves, x.to_vec(), &still(length))?;
             let step = motion.step();
             steps += 1;
@@ -90,13 +95,18 @@ pub fn descend(
                 length *= 0.5;
                 continue;
             }
-            way = greatest_way(x, motion.positions());
+            let way = greatest_way(x, motion.positions());
+            // What drives the cloth on, m/s².
+            let pull = way / (length * length);
+            strongest = strongest.max(pull);
             x.copy_from_slice(motion.positions());
             watch(steps, way);
             if step.status == dynamics::Status::NotConverged {
                 length *= 0.5;
-                way = f64::INFINITY;
-            } else if step.newton_iterations < EASY {
+                continue;
+            }
+            going = !(way <= near && pull <= WEAK * strongest || way <= NOTHING * cloth.mean_edge());
+            if step.newton_iterations < EASY {
                 length *= settings.growth;
             }
         }

@@ -14,6 +14,8 @@ use cloth_fit::io::ShapeFormat;
 use cloth_fit::material::Material;
 use cloth_fit::result::check_output;
 use cloth_fit::store::replace_folder;
+use cloth_sim::curve::soundness::{Context, Finding, check};
+use cloth_sim::material::Component;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -46,6 +48,9 @@ pub struct SimulateOptions {
     /// How long to simulate [default: as the scene says]
     #[arg(long, value_name = "SECONDS", value_parser = parse_duration)]
     pub duration: Option<f64>,
+    /// Simulate curves whose stiffness or tangent is not positive, too
+    #[arg(long)]
+    pub allow_unstable: bool,
     /// What weft and warp do under compression [default: as the material says]
     #[arg(long, value_enum)]
     pub compression: Option<CompressionChoice>,
@@ -88,6 +93,9 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
         Some(choice) => material.with_compression(choice.into())?,
         None => material,
     };
+    if !options.allow_unstable {
+        options.refuse_unstable(&material, &scene.components(&material)?)?;
+    }
     let simulation = options.simulate(&scene, &material, telling)?;
     replace_folder(&folder, |temporary| {
         simulation::write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;
@@ -104,6 +112,22 @@ impl SimulateOptions {
         self.out.clone().unwrap_or_else(|| {
             PathBuf::from("out").join(self.scene.file_stem().unwrap_or("simulation".as_ref()))
         })
+    }
+
+    /// Refuses curves that can go wrong by their shape.
+    fn refuse_unstable(&self, material: &Material, components: &[Component]) -> Result<(), Error> {
+        let findings =
+            components.iter().filter_map(|&component| Some((component, material.curves.get(component)?)));
+        for (component, curve) in findings {
+            if let Some(finding) = check(curve, &Context::default()).into_iter().find(Finding::is_unstable) {
+                let [from, to] = finding.strains;
+                let found =
+                    format!("{} from strain {from} to {to} ({})", finding.kind, finding.consequence());
+                let expected = "a curve whose tangent is above a thousandth of its largest stiffness, or --allow-unstable";
+                return Err(Error::input(&self.material, None, component.to_string(), found, expected));
+            }
+        }
+        Ok(())
     }
 
     fn simulate(&self, scene: &Scene, material: &Material, telling: Telling) -> Result<Simulation, Error> {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// A corner of a face: its vertex and its material coordinates, both from 0.
 type Corner = (usize, Option<usize>);
 
-/// The axes of space that the yarns of a mesh without material coordinates lie along at rest.
+/// The axes of space that the yarns of a flat mesh lie along at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YarnAxes {
     /// Along weft.
@@ -23,17 +23,14 @@ pub struct YarnAxes {
 
 /// Reads a rest mesh; polygons are split into triangles from their first corner.
 ///
-/// * `axes` — for a file without `vt`: the material coordinates are the rest positions' components along these
+/// * `axes` — the material coordinates are the rest positions' components along these, and `vt`, which may be those of a
+///   texture, do not count
 ///
 /// # Errors
-/// No mesh, or one that no cloth can have, with its line; `vt` in spite of `axes`, or none without.
+/// No mesh, or one that no cloth can have, with its line; no `vt` where there are no `axes`.
 pub fn read_mesh(path: &Path, axes: Option<YarnAxes>) -> Result<Mesh> {
     let mut obj = Obj::read(path)?;
     if let Some(YarnAxes { weft, warp }) = axes {
-        if !obj.coordinates.is_empty() {
-            let expected = "a file without vt where weft and warp are axes of space";
-            return Err(Error::input(path, None, "vt", "material coordinates", expected));
-        }
         let along = |(_, p): &(usize, Vector3<f64>)| Vector2::new(p.dot(&weft), p.dot(&warp));
         obj.coordinates = obj.vertices.iter().map(along).collect();
         for (_, corners) in &mut obj.faces {

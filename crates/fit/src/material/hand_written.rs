@@ -1,6 +1,7 @@
 //! A material's TOML file, as a person writes it.
 
 use super::Material;
+use crate::curve_file::CurveFile;
 use crate::error::{Error, Result};
 use crate::io::TomlFile;
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
@@ -10,7 +11,7 @@ use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, de};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The file.
 #[derive(Debug, Deserialize)]
@@ -26,7 +27,7 @@ pub(super) struct HandWritten {
     curves: BTreeMap<Component, Points>,
 }
 
-/// A curve: a constant, or control points.
+/// A curve: a constant, control points, or a table beside the file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Points {
@@ -38,6 +39,8 @@ struct Points {
     curvature_per_m: Option<Vec<f64>>,
     #[serde(default)]
     rigidity_n_m: Option<Numbers>,
+    #[serde(default)]
+    file: Option<PathBuf>,
 }
 
 impl HandWritten {
@@ -56,6 +59,10 @@ impl HandWritten {
         }
         let curves = curves.into_iter().map(|(component, points)| {
             let negative = model.negative_strain(component, compression);
+            if let Some(table) = points.table(component, file)? {
+                let table = path.parent().unwrap_or(Path::new("")).join(table);
+                return Ok((component, CurveFile::read(&table)?.curve(component, model, negative)?));
+            }
             let (strains, stiffnesses) = points.values(model, component, file)?;
             let key = format!("curves.{component}");
             let curve = StiffnessCurve::new(strains, stiffnesses, negative)
@@ -70,6 +77,24 @@ impl HandWritten {
 const CURVE: &str = "finite values at ascending places, the first at 0";
 
 impl Points {
+    /// The file that the curve stands in, if that is how it is given.
+    fn table(&self, component: Component, file: &TomlFile) -> Result<Option<&Path>> {
+        let Some(table) = &self.file else { return Ok(None) };
+        let others = [
+            ("strain", self.strain.is_some()),
+            ("stiffness_n_per_m", self.stiffness_n_per_m.is_some()),
+            ("curvature_per_m", self.curvature_per_m.is_some()),
+            ("rigidity_n_m", self.rigidity_n_m.is_some()),
+        ];
+        match others.into_iter().find(|(_, given)| *given) {
+            Some((name, _)) => {
+                let key = format!("curves.{component}.{name}");
+                Err(file.invalid(&key, format!("{name} beside file"), "one of them"))
+            }
+            None => Ok(Some(table)),
+        }
+    }
+
     /// Strains and stiffnesses of the model's own.
     fn values(&self, model: Model, component: Component, file: &TomlFile) -> Result<(Vec<f64>, Vec<f64>)> {
         // Springs that bend have a strain of their own, without unit, and no curvature that would not depend on the mesh.

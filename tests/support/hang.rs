@@ -1,0 +1,45 @@
+//! The wool sheet of 10 m × 10 m that Strohkorb 2019 hangs from two corners.
+
+use crate::{data, rows};
+use cloth_fit::io::{YarnAxes, read_mesh};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::load::Held;
+use cloth_sim::material::{Component, Compression, Curves, Model};
+use cloth_sim::samples::Sample;
+use nalgebra::Vector3;
+
+/// The sheet at rest, y up; weft and warp bear tension only, and nothing bends.
+///
+/// * `planar` — all motion in planes z = const
+///
+/// # Panics
+/// If the reference data cannot be read.
+pub fn gnatv_hang(planar: bool) -> Sample {
+    let axes = YarnAxes { weft: Vector3::x(), warp: Vector3::y() };
+    let mesh = read_mesh(&data("gnatv_hang/rest_mesh.obj"), Some(axes)).expect("the sheet at rest");
+    let held = [2, 3].map(|node| Held { node, clip: Some(0) }).into();
+    let gravity = Vector3::new(0.0, -9.8, 0.0);
+    let at_rest = Sample::at_rest(mesh, Model::Stvk, wool());
+    Sample { areal_density: 0.15, gravity, held, planar, ..at_rest }
+}
+
+/// The wool's published points of stress over Green strain; between them a spline of the stiffness.
+fn wool() -> Curves {
+    let table = rows("gnatv_wool/stress_strain_as_published.csv");
+    let names =
+        [("weft", Component::StretchWeft), ("warp", Component::StretchWarp), ("shear", Component::Shear)];
+    let curve = |(name, component): (&str, Component)| {
+        let number = |field: &str| field.parse::<f64>().expect("a number");
+        let points =
+            table.iter().filter(|row| row[0] == name).map(|row| [&row[2], &row[3]].map(|f| number(f)));
+        let above: Vec<[f64; 2]> = points.filter(|[strain, _]| *strain > 1e-9).collect();
+        let secants: Vec<f64> = above.iter().map(|[strain, stress]| stress / strain).collect();
+        // The stress at zero does not tell the stiffness there: on a straight line from the first two, at least the first.
+        let start = (2.0 * secants[0] - secants[1]).max(0.5 * secants[0]);
+        let strains = std::iter::once(0.0).chain(above.iter().map(|point| point[0])).collect();
+        let stiffnesses = std::iter::once(start).chain(secants).collect();
+        let negative = Model::Stvk.negative_strain(component, Compression::None);
+        (component, StiffnessCurve::new(strains, stiffnesses, negative).expect("a curve"))
+    };
+    names.into_iter().map(curve).collect()
+}
