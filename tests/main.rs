@@ -8,6 +8,7 @@ mod coverage;
 mod outliers;
 mod published;
 mod recovery;
+mod repair;
 mod rig;
 mod shear;
 mod starts;

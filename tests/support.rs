@@ -8,6 +8,8 @@ pub mod elastica;
 pub mod own_mesh;
 #[path = "support/picture_frame.rs"]
 pub mod picture_frame;
+#[path = "support/random_curve.rs"]
+pub mod random_curve;
 
 use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_fit::report::Sample;
