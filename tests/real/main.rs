@@ -13,3 +13,4 @@ mod nist;
 mod picture_frame;
 mod strips;
 mod synthetic;
+mod wool;
