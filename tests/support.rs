@@ -10,6 +10,8 @@ pub mod hang;
 pub mod own_mesh;
 #[path = "support/picture_frame.rs"]
 pub mod picture_frame;
+#[path = "support/random_curve.rs"]
+pub mod random_curve;
 #[path = "support/strip.rs"]
 pub mod strip;
 

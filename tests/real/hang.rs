@@ -9,6 +9,7 @@
 
 use cloth_sim::cloth::ForceScale;
 use cloth_sim::descent::{Descent, Settings, descend};
+use cloth_sim::dynamics::{self, Damping, Motion, Status};
 use cloth_sim::samples::Sample;
 use fit_cloth_tests::hang::gnatv_hang;
 use fit_cloth_tests::rows;
@@ -61,4 +62,38 @@ fn in_space_it_hangs_as_low() {
     assert!((vertex + 5.117).abs() < 0.010, "{vertex}");
     assert!((-5.075..=-5.045).contains(&mean), "{mean}");
     assert!((force / WEIGHT - 1.0).abs() < 1e-3, "{force}");
+}
+
+/// Where damped motion from the flat sheet, at rest, ends; 3 stacked coordinates a node.
+fn after_motion(sample: &Sample) -> Vec<f64> {
+    let cloth = sample.cloth().unwrap();
+    // The slowest swing of 10 m takes seconds: α = 1/s damps it by a quarter.
+    let damping = Damping { mass: 1.0, stiffness: 1e-3 };
+    let settings = dynamics::Settings { step: 0.02, damping, ..Default::default() };
+    let mut motion = Motion::new(&cloth, &sample.curves, sample.start.clone(), &settings).unwrap();
+    let mut quiet = 0;
+    while quiet < 50 && motion.time() < 120.0 {
+        assert_eq!(motion.step().status, Status::Done, "{} s", motion.time());
+        quiet = if motion.greatest_speed() < 1e-5 { quiet + 1 } else { 0 };
+    }
+    println!("at rest after {:.1} s; {:?}", motion.time(), motion.energies());
+    assert!(quiet == 50, "still {:e} m/s", motion.greatest_speed());
+    motion.positions().to_vec()
+}
+
+#[test]
+fn damped_motion_comes_to_the_same_shape() {
+    let sample = gnatv_hang(true);
+    let (still, ..) = at_rest(&sample);
+    let moved = after_motion(&sample);
+    let apart = still.iter().zip(&moved).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    println!("in its plane: {apart:.1e} m from the shape at rest");
+    assert!(apart < 1e-4, "{apart}");
+
+    let mut sample = gnatv_hang(false);
+    sample.perturb(1e-2);
+    let moved = after_motion(&sample);
+    let vertex = moved[3 * 8 + 1];
+    println!("in space: vertex 8 {vertex:.4}");
+    assert!((vertex + 5.117).abs() < 0.010, "{vertex}");
 }

@@ -99,7 +99,7 @@ impl CurveFile {
         self.check_component(component, model)?;
         let [axis, stiffness, stress, ..] = self.kind.columns();
         let scale = self.kind.strain_per_unit();
-        let zero = ZERO * self.strains.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+        let zero = ZERO * self.largest_strain();
         let first = self.strains.partition_point(|&strain| strain <= zero);
         let below = self.strains.partition_point(|&strain| strain < -zero);
         let largest = self.largest_stress();
@@ -186,6 +186,35 @@ impl CurveFile {
         }
     }
 
+    /// The same rows with all strains and all stresses multiplied: stiffnesses and bands follow.
+    pub fn scaled(&self, strain: f64, stress: f64) -> Self {
+        let times = |values: &[f64], factor: f64| values.iter().map(|value| value * factor).collect();
+        Self {
+            strains: times(&self.strains, strain),
+            stresses: times(&self.stresses, stress),
+            stiffnesses: self.stiffnesses.as_ref().map(|values| times(values, stress / strain)),
+            band: self.band.each_ref().map(|side| side.as_ref().map(|values| times(values, stress))),
+            ..self.clone()
+        }
+    }
+
+    /// A row for every control point of another curve, below the rows of this one that lie below zero; without a band,
+    /// which is known of this one's rows only.
+    pub fn with_points(&self, curve: &StiffnessCurve) -> Self {
+        let scale = self.kind.strain_per_unit();
+        let zero = ZERO * self.largest_strain();
+        let below = self.strains.iter().take_while(|&&strain| strain < -zero);
+        let points = curve.strains().iter().map(|strain| strain / scale);
+        let strains: Vec<f64> = below.copied().chain(points).collect();
+        let rows = Self { stresses: vec![0.0; strains.len()], strains, band: [None, None], ..self.clone() };
+        rows.with_curve(curve)
+    }
+
+    /// Strain of the model's elements over what the first column holds: 1, or 3 for curvature.
+    pub fn strain_per_unit(&self) -> f64 {
+        self.kind.strain_per_unit()
+    }
+
     /// The file's text, with the columns that are there.
     pub fn to_csv(&self) -> String {
         let [axis, stiffness, stress, low, high] = self.kind.columns();
@@ -207,6 +236,15 @@ impl CurveFile {
             text.push('\n');
         }
         text
+    }
+
+    /// True if a row lies below zero.
+    pub fn is_two_sided(&self) -> bool {
+        self.strains[0] < -ZERO * self.largest_strain()
+    }
+
+    fn largest_strain(&self) -> f64 {
+        self.strains.iter().fold(0.0, |largest: f64, strain| largest.max(strain.abs()))
     }
 
     fn largest_stress(&self) -> f64 {

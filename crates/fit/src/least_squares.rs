@@ -12,6 +12,8 @@
 
 mod active_set;
 mod dense;
+mod interior_point;
+mod nearest;
 mod scaled;
 
 pub use dense::Triangle;

@@ -23,7 +23,8 @@
 //! |---|---|
 //! | [`frame`] | what was measured: set, sequence, frame |
 //! | [`io`], [`strip`], [`rig`] | where it comes from: files, a tensile machine's table, a known cloth |
-//! | [`curve_file`] | a curve as a table |
+//! | [`curve_file`], [`curve_edit`] | a curve as a table; curves made wider, stronger, longer |
+//! | [`check`], [`repair`] | what would spoil a simulation, and the nearest curve that does not |
 //! | [`specimen`], [`replica`] | a simulation grid over the specimen; its cloth, what holds it, its frames |
 //! | [`gap`] | a start without any simulation |
 //! | [`simulation`] | equilibria of all frames, residuals, sensitivities |
@@ -72,7 +73,9 @@
 //! ```
 
 mod boundary;
+pub mod check;
 pub mod compare;
+pub mod curve_edit;
 pub mod curve_file;
 pub mod error;
 pub mod frame;
@@ -88,6 +91,7 @@ pub mod material_file;
 pub mod measure;
 pub mod prediction;
 pub mod refine;
+pub mod repair;
 pub mod replica;
 pub mod report;
 pub mod result;

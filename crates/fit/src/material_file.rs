@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
 use crate::stage::{Constraints, Settings, Variant};
+use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::Diagonals;
 use serde::{Deserialize, Serialize};
@@ -66,6 +67,9 @@ pub struct Provenance {
     pub diagonals: Option<Diagonals>,
     /// Columns and rows of the simulation, a sequence each.
     pub nodes: BTreeMap<String, [usize; 2]>,
+    /// What was changed after the fit, in order: repairs, and edits by hand.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<String>,
 }
 
 impl MaterialFile {
@@ -106,6 +110,7 @@ impl MaterialFile {
                 robust: settings.robust,
                 diagonals: Some(settings.diagonals),
                 nodes: nodes.collect(),
+                changes: Vec::new(),
             },
         }
     }
@@ -134,6 +139,30 @@ impl MaterialFile {
         file.named_curves()
             .map_err(|(component, found)| Error::input(path, None, component.to_string(), found, CURVE))?;
         Ok(file)
+    }
+
+    /// Puts another curve in the place of an observed one, and says so in the provenance.
+    ///
+    /// Deviations go: they were those of the curve that was fitted. What the measurement told of it stays only where the
+    /// control points keep their strains. Components that shared the curve no longer do.
+    ///
+    /// * `change` — in words, what was done
+    pub fn set_curve(&mut self, component: Component, curve: &StiffnessCurve, change: &str) {
+        let unit = Unit::of(self.model, component);
+        let entry = self.curves.entry(component).or_default();
+        let strains = entry.control_points.iter().map(|point| point.strain);
+        if !strains.eq(curve.strains().iter().copied()) {
+            *entry = CurveEntry { observed: true, given: entry.given, ..CurveEntry::default() };
+        }
+        let points = curve.strains().iter().zip(curve.stiffnesses());
+        entry.control_points = points
+            .map(|(&strain, &stiffness)| ControlPoint { strain, stiffness, deviation: None, unit })
+            .collect();
+        let sharing = std::mem::take(&mut entry.shared_by);
+        for other in sharing.into_iter().filter(|&other| other != component) {
+            self.curves.entry(other).or_default().shared_by.clear();
+        }
+        self.provenance.changes.push(format!("{component}: {change}"));
     }
 
     /// The file's text.

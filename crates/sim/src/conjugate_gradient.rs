@@ -90,3 +90,38 @@ impl ConjugateGradient {
         self.residual.iter().zip(&self.inverse_diagonal).map(|(r, p)| r * r * p).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pairs of unknowns, each [d c; c d].
+    fn pairs(d: f64, c: f64) -> (Pattern, Vec<f64>) {
+        let columns: Vec<Vec<usize>> =
+            (0..10).flat_map(|i| [vec![2 * i, 2 * i + 1], vec![2 * i + 1]]).collect();
+        (Pattern::new(&columns).unwrap(), (0..10).flat_map(|_| [d, c, d]).collect())
+    }
+
+    #[test]
+    fn two_eigenvalues_take_two_iterations() {
+        let (pattern, lower) = pairs(2.0, 1.0);
+        let mut gradients = ConjugateGradient::new(&pattern, 1e-12, 100);
+        gradients.prepare(&pattern, &lower).unwrap();
+        let exact: Vec<f64> = (0..20).map(|i| f64::from(i).sin()).collect();
+        let mut b = vec![0.0; 20];
+        pattern.multiply(&lower, &exact, &mut b);
+        gradients.solve(&pattern, &mut b).unwrap();
+        assert!(b.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-14));
+        assert_eq!(gradients.iterations, 2);
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_is_an_error() {
+        let (pattern, lower) = pairs(1.0, 2.0);
+        let mut gradients = ConjugateGradient::new(&pattern, 1e-12, 100);
+        gradients.prepare(&pattern, &lower).unwrap();
+        assert!(gradients.solve(&pattern, &mut [1.0, -1.0].repeat(10)).is_err());
+        assert!(gradients.prepare(&pattern, &[f64::NAN; 30]).is_err());
+        assert!(gradients.prepare(&pattern, &[-1.0; 30]).is_err());
+    }
+}

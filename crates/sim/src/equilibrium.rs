@@ -163,6 +163,10 @@ pub struct Solver<'a> {
     damping: f64,
     /// Newton matrices that were not positive definite, in this minimisation.
     clamped: usize,
+    /// Downhill in every step, with the full Hessian or the clamped one.
+    careful: bool,
+    /// Where a time step starts.
+    before: Vec<f64>,
 }
 
 impl<'a> Solver<'a> {
@@ -192,6 +196,8 @@ impl<'a> Solver<'a> {
             shift: 0.0,
             damping: 0.0,
             clamped: 0,
+            careful: false,
+            before: Vec::new(),
         }
     }
 
@@ -413,7 +419,8 @@ impl<'a> Solver<'a> {
     /// The same with the geometric part at the strains that the last step predicted, if there was one.
     fn assemble_mixed(&mut self, curves: &Curves, x: &[f64]) {
         let mixed = std::mem::take(&mut self.mixed);
-        let curvature = if mixed.is_empty() { Curvature::Full } else { Curvature::Mixed(&mixed) };
+        let curvature =
+            if mixed.is_empty() || self.careful { Curvature::Full } else { Curvature::Mixed(&mixed) };
         self.assemble(curves, x, curvature);
         self.mixed = mixed;
     }

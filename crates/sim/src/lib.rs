@@ -10,6 +10,7 @@
 //! equilibrium   ∂E/∂x = 0 at every free node; held nodes stay at their prescribed places, tied ones move alike
 //! clip force    F = Σ ∂E/∂xₐ over the nodes a that the clip holds
 //! sensitivity   ∂x/∂k = −K⁻¹ ∂²E/∂x∂k,   K = ∂²E/∂x²
+//! motion        M ẍ = −∂E/∂x − C ẋ + drag of the air
 //! ```
 //!
 //! k_c is a Hermite spline through control points, the stiffnesses that a fit finds; energy, stress and forces are linear
@@ -19,7 +20,7 @@
 //! ([`Equilibrium::escaped`](equilibrium::Equilibrium::escaped)): near there another shape is as good. Where clips have moved
 //! far, [`Solver::drive`](equilibrium::Solver::drive) takes the sheet along in as many load steps as that needs. Nodes may be
 //! tied ([`Problem::tied`](cloth::Problem::tied)): they then share their unknowns, as the lines of a sheet do that bends as a
-//! cylinder.
+//! cylinder. Or guided ([`Problem::guided`](cloth::Problem::guided)): they keep to a plane or a line.
 //!
 //! | Type | Role |
 //! |---|---|
@@ -30,6 +31,8 @@
 //! | [`load::Held`] | nodes that clips or tables hold |
 //! | [`cloth::Problem`] → [`cloth::Cloth`] | all of it made ready: energy, gradient, sparse Hessian |
 //! | [`equilibrium::Solver`] → [`equilibrium::Equilibrium`] | the balanced state, its clip forces, and how the solve ended |
+//! | [`dynamics::Motion`] | the cloth on its way: implicit or explicit time steps, damping, wind, energies |
+//! | [`descent`] | from any shape down to one at rest |
 //! | [`samples::Sample`] | small problems with known answers |
 //!
 //! Units are SI. A mistake in the input is an [`error::Error`]; a solve that fails is a

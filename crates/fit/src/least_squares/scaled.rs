@@ -2,9 +2,8 @@
 
 use super::active_set::{Held, polish};
 use super::dense::{Spectrum, Triangle};
+use super::interior_point::{Program, SolverStatus};
 use super::{Kkt, RANK_TOLERANCE};
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
 /// Minimise ½‖R q − c‖² subject to G q ≥ h, with `q = norms ∘ p` so that the columns of R have unit length, as have
@@ -160,7 +159,7 @@ impl Scaled {
         (if better { polished } else { start }, refused)
     }
 
-    /// clarabel on the small problem. The unknowns are measured in the length of the solution: its tolerances are
+    /// The interior-point method on the small problem. The unknowns are measured in the length of the solution: its tolerances are
     /// absolute, so a first answer far shorter than assumed is computed again.
     fn interior_point(&self, free: &DVector<f64>) -> (Held, SolverStatus) {
         let needed = self.bounds.iter().copied().fold(0.0, f64::max);
@@ -185,8 +184,7 @@ impl Scaled {
     fn interior_point_in(&self, length: f64) -> (Held, SolverStatus) {
         let (n, m) = (self.columns(), self.rows.nrows());
         let force = length.max(self.matrix.tr_mul(&self.target).amax());
-        let mut curvature = DMatrix::zeros(2 * n, 2 * n);
-        curvature.view_mut((n, n), (n, n)).fill_diagonal(length / force);
+        let curvature: Vec<f64> = (0..2 * n).map(|i| if i < n { 0.0 } else { length / force }).collect();
         let slope: Vec<f64> =
             (0..2 * n).map(|i| if i < n { 0.0 } else { -self.target[i - n] / force }).collect();
         let mut system = DMatrix::zeros(n + m, 2 * n);
@@ -195,36 +193,19 @@ impl Scaled {
         system.view_mut((n, 0), (m, n)).copy_from(&-&self.rows);
         let right: Vec<f64> =
             (0..n + m).map(|i| if i < n { 0.0 } else { -self.bounds[i - n] / length }).collect();
-        let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
-        let cones = [ZeroConeT(n), NonnegativeConeT(m)];
-        let solver =
-            DefaultSolver::new(&sparse(&curvature), &slope, &sparse(&system), &right, &cones, settings);
-        let Ok(mut solver) = solver else {
+        let program =
+            Program { curvature: &curvature, slope: &slope, system: &system, right: &right, equations: n };
+        let Some((point, multipliers, status)) = program.solve() else {
             let held = Held { point: DVector::zeros(n), multipliers: DVector::zeros(m) };
             return (held, SolverStatus::NumericalError);
         };
-        solver.solve();
-        let point = DVector::from_fn(n, |j, _| solver.solution.x[j] * length);
-        let multipliers = DVector::from_fn(m, |i, _| solver.solution.z[n + i] * force);
-        (Held { point, multipliers }, solver.solution.status)
+        let point = DVector::from_fn(n, |j, _| point[j] * length);
+        let multipliers = DVector::from_fn(m, |i, _| multipliers[n + i] * force);
+        (Held { point, multipliers }, status)
     }
 }
 
 /// A scale to divide by: the value itself, or 1 if it is zero.
 pub(super) fn unit_or(value: f64) -> f64 {
     if value == 0.0 { 1.0 } else { value }
-}
-
-/// Compressed columns without the zeros.
-fn sparse(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
-    let mut starts = vec![0];
-    let (mut row_indices, mut values) = (Vec::new(), Vec::new());
-    for column in matrix.column_iter() {
-        for (i, &value) in column.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-            row_indices.push(i);
-            values.push(value);
-        }
-        starts.push(values.len());
-    }
-    CscMatrix::new(matrix.nrows(), matrix.ncols(), starts, row_indices, values)
 }

@@ -115,9 +115,14 @@ impl Finding {
         }
     }
 
+    /// True if the curve is not to be simulated as it is.
+    pub fn is_defect(&self) -> bool {
+        self.severity() == Severity::Defect
+    }
+
     /// True if the curve can go wrong in a simulation because of its shape, whatever its unit.
     pub fn is_unstable(&self) -> bool {
-        self.severity() == Severity::Defect && self.kind != Kind::Magnitude
+        self.is_defect() && self.kind != Kind::Magnitude
     }
 
     /// What it would do in a simulation.
@@ -145,6 +150,20 @@ impl Finding {
             }
             Kind::Magnitude => "far too stiff for a cloth, probably another unit: time steps shrink with it",
             Kind::Unvisited => "nothing was measured there: the curve is a guess",
+        }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.strains;
+        match high {
+            f64::INFINITY => write!(f, "{} from {low:.4} on", self.kind)?,
+            _ => write!(f, "{} from {low:.4} to {high:.4}", self.kind)?,
+        }
+        match self.kind {
+            Kind::Unvisited => Ok(()),
+            _ => write!(f, " ({:.3e}, limit {:.3e})", self.value, self.limit),
         }
     }
 }

@@ -45,7 +45,7 @@ impl Solver<'_> {
                 return Status::IterationLimit;
             }
             let Some(slope) = self.newton_direction(curves, x) else { return Status::Stalled };
-            let nonmonotone = *iterations < NONMONOTONE_STEPS;
+            let nonmonotone = *iterations < NONMONOTONE_STEPS && !self.careful;
             *iterations += 1;
             if !self.line_search(curves, x, energy, slope, nonmonotone) {
                 return Status::Stalled;
@@ -80,7 +80,7 @@ impl Solver<'_> {
             return Some(slope);
         }
         self.clamped += 1;
-        if self.damping < DAMPING && self.clamped > CLAMPED_STEPS {
+        if self.damping < DAMPING && self.clamped > CLAMPED_STEPS && !self.careful {
             self.damping = DAMPING;
             if let Some(slope) = self.direction_of(DAMPING * mean) {
                 return Some(slope);
@@ -105,6 +105,7 @@ impl Solver<'_> {
             return false;
         }
         let norm = self.cloth.norm(&self.gradient);
+        let rounding = 1e-9 * energy.abs();
         let mut length = 1.0;
         for halving in 0..30 {
             let trial_energy = self.try_step(curves, x, length);
@@ -113,10 +114,11 @@ impl Solver<'_> {
             } else {
                 trial_energy <= *energy + 1e-4 * length * slope
             };
-            // Near the end energy differences drown in rounding: the imbalance decides.
+            // Near the end energy differences drown in rounding: the imbalance decides, of a careful step within that.
             let contraction = self.cloth.norm(&self.trial_gradient) / norm;
             if contraction.is_finite()
-                && (acceptable || contraction < 0.5)
+                && (acceptable
+                    || (contraction < 0.5 && (!self.careful || trial_energy <= *energy + rounding)))
                 && !self.cloth.hinge_jumps(x, &self.trial)
             {
                 self.step.iter_mut().for_each(|d| *d *= length);

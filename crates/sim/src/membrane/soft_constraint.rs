@@ -19,11 +19,13 @@ pub struct SoftTriangle(pub Triangle);
 /// |w| as √(|w|² + δ²): the same bits at rest, finite derivatives at collapse.
 const SMALLEST_STRETCH: f64 = 1e-8;
 
+#[inline(always)]
 fn length<const N: usize>(w: &Point<N>) -> f64 {
     (w.norm_squared() + SMALLEST_STRETCH * SMALLEST_STRETCH).sqrt()
 }
 
 impl SoftTriangle {
+    #[inline(always)]
     fn add_blocks<const N: usize>(
         &self,
         x: &[Point<N>; 3],
@@ -59,11 +61,13 @@ impl<const N: usize> Element<3, N, 3> for SoftTriangle {
         self.0.area
     }
 
+    #[inline(always)]
     fn strains(&self, x: &[Point<N>; 3]) -> [f64; 3] {
         let [w_u, w_v] = self.0.deformation(x);
         [length(&w_u) - 1.0, length(&w_v) - 1.0, w_u.dot(&w_v)]
     }
 
+    #[inline(always)]
     fn gradients(&self, x: &[Point<N>; 3]) -> [[Point<N>; 3]; 3] {
         let [w_u, w_v] = self.0.deformation(x);
         let [n_u, n_v] = [w_u / length(&w_u), w_v / length(&w_v)];
@@ -74,6 +78,7 @@ impl<const N: usize> Element<3, N, 3> for SoftTriangle {
         ]
     }
 
+    #[inline(always)]
     fn add_geometric(
         &self,
         x: &[Point<N>; 3],

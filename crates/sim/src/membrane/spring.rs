@@ -28,6 +28,7 @@ pub struct Spring {
 
 impl Spring {
     /// Direction and length; the length never is zero.
+    #[inline(always)]
     fn length<const N: usize>(&self, x: &[Point<N>; 2]) -> (Point<N>, f64) {
         let along = x[1] - x[0];
         let smallest = 1e-8 * self.rest_length;
@@ -49,15 +50,18 @@ impl<const N: usize> Element<2, N, 1> for Spring {
         self.area
     }
 
+    #[inline(always)]
     fn strains(&self, x: &[Point<N>; 2]) -> [f64; 1] {
         [self.length(x).1 / self.rest_length - 1.0]
     }
 
+    #[inline(always)]
     fn gradients(&self, x: &[Point<N>; 2]) -> [[Point<N>; 2]; 1] {
         let normal = self.length(x).0 / self.rest_length;
         [[-normal, normal]]
     }
 
+    #[inline(always)]
     fn add_geometric(&self, x: &[Point<N>; 2], &[stress]: &[f64; 1], blocks: &mut [[Block<N>; 2]; 2]) {
         let (normal, length) = self.length(x);
         let across =
