@@ -5,6 +5,7 @@
 mod bending;
 mod closed_form;
 mod coverage;
+mod droop;
 mod outliers;
 mod published;
 mod recovery;

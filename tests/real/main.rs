@@ -6,6 +6,7 @@
 mod analytic;
 mod bias;
 mod cantilever;
+mod drape;
 mod hang;
 mod knits;
 mod motion;

@@ -59,3 +59,8 @@ fn the_examples_of_compare_run() {
 fn the_examples_of_study_run() {
     examples_run("study");
 }
+
+#[test]
+fn the_examples_of_simulate_run() {
+    examples_run("simulate");
+}

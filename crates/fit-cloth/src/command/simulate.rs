@@ -21,8 +21,8 @@ use std::path::PathBuf;
 
 const EXAMPLE: &str = "\
 Example:
-  fit-cloth simulate fixtures/scenes/hang.toml --material fixtures/materials/cotton.toml --out out/hang
-  fit-cloth simulate fixtures/scenes/drape.toml --material fixtures/materials/cotton.toml --rest --out out/drape
+  fit-cloth simulate fixtures/scenes/hang.toml --material fixtures/materials/cotton.toml
+  fit-cloth simulate fixtures/scenes/drape.toml --material fixtures/materials/cotton.toml --rest
 
 Writes simulation.json, mesh.obj, frames/*.obj, energies.csv and plots/shapes.svg. A material is the material.json of a
 fit, or a TOML file: docs/formats.md.";
@@ -31,9 +31,9 @@ fit, or a TOML file: docs/formats.md.";
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct SimulateOptions {
-    /// The scene: a sheet, what holds it, the air, the solver
+    /// The scene, a TOML file: a sheet, what holds it, the air, the solver
     pub scene: PathBuf,
-    /// Of what it is made
+    /// What the sheet is made of
     #[arg(long, value_name = "FILE")]
     pub material: PathBuf,
     /// Where to write; a former result there is replaced [default: out/ and the scene's name]

@@ -43,7 +43,16 @@ pub(super) fn draw(scene: &Scene, simulation: &Simulation) -> Drawn<String> {
     }
     let seen = panels.iter().map(|(_, view, frame)| {
         let mut points = frame.positions.clone();
-        points.extend(support.map(|circle| stand(scene, circle, view, &frame.positions)[1]));
+        if let Some(circle) = support {
+            let [head, foot] = stand(scene, circle, view, &frame.positions);
+            points.push(foot);
+            if view.is_from_above() {
+                let flat = flat_radius(scene, circle);
+                points.extend(
+                    view.level().into_iter().flat_map(|side| [head + flat * side, head - flat * side]),
+                );
+            }
+        }
         view.extent(&points)
     });
     let seen: Vec<_> = seen.collect();
@@ -86,8 +95,7 @@ fn sheet<'s>(
         Some(circle) => {
             let [centre, foot] = stand(scene, circle, view, positions);
             if view.is_from_above() {
-                let flat = scene.mesh.material.iter().map(|m| (m - circle.centre).norm()).fold(0.0, f64::max);
-                painter.disc(centre, flat);
+                painter.disc(centre, flat_radius(scene, circle));
                 painter.ring(centre, circle.radius);
             } else {
                 painter.cylinder(centre, circle.radius, foot);
@@ -105,6 +113,11 @@ fn stand(scene: &Scene, circle: Circle, view: &View, positions: &[Vector3<f64>])
     let head = held.sum::<Vector3<f64>>() / scene.held.len().max(1) as f64;
     let lowest = positions.iter().map(|p| (head - p).dot(&view.upright)).fold(0.0, f64::max);
     [head, head - (lowest + 0.5 * circle.radius) * view.upright]
+}
+
+/// How far the sheet reaches from a support's middle when it lies flat.
+fn flat_radius(scene: &Scene, circle: Circle) -> f64 {
+    scene.mesh.material.iter().map(|m| (m - circle.centre).norm()).fold(0.0, f64::max)
 }
 
 /// The first, those at a third and two thirds, the last.

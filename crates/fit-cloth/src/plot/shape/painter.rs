@@ -18,7 +18,7 @@ const OUTLINE: RGBColor = RGBColor(70, 70, 70);
 /// Least share of light on a face.
 const DARK: f64 = 0.42;
 /// Faces reach beyond their edges by so much, in pixels: no paper shines through between neighbours.
-const OVERLAP: f64 = 1.8;
+const OVERLAP: f64 = 2.2;
 /// A circle's corners.
 const CORNERS: usize = 48;
 
@@ -67,7 +67,7 @@ impl<'v> Painter<'v> {
         }
         // An edge lies as near as its triangle and before it.
         let nearer =
-            1e-2 * self.view.extent(positions).iter().flatten().fold(0.0, |m: f64, c| m.max(c.abs()));
+            2e-2 * self.view.extent(positions).iter().flatten().fold(0.0, |m: f64, c| m.max(c.abs()));
         for edge in mesh.edges().unwrap_or_default().iter().filter(|edge| edge.right.is_none()) {
             let ends = edge.ends.map(|node| positions[node]);
             let inner = positions[edge.left];

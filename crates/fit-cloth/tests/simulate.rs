@@ -1,0 +1,231 @@
+//! The program `fit-cloth simulate` on tiny scenes, run as a user runs it.
+
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A strip of four cells in height, 1 m long, held along its top.
+const SCENE: &str = "\
+name = \"strip\"
+gravity_m_s2 = [0.0, 0.0, -10.0]
+duration_s = 0.4
+step_s = 0.01
+frames_per_s = 10
+measure = \"droop\"
+[sheet]
+grid = { width_m = 0.25, height_m = 1.0, nodes = [2, 5] }
+warp = [0.0, 0.0, 1.0]
+[[held]]
+edge = \"top\"
+[damping]
+stiffness_s = 0.05
+";
+
+const CLOTH: &str = "\
+name = \"cloth\"
+areal_density_kg_m2 = 0.2
+model = \"soft-constraint\"
+[curves]
+stretch-weft = { stiffness_n_per_m = 100.0 }
+stretch-warp = { stiffness_n_per_m = 100.0 }
+shear = { stiffness_n_per_m = 10.0 }
+";
+
+/// A folder with `scene.toml` and `cloth.toml`.
+fn folder(scene: &str, cloth: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    fs::write(folder.path().join("cloth.toml"), cloth).unwrap();
+    folder
+}
+
+fn simulate(folder: &Path, more: &[&str]) -> Output {
+    let arguments = [&["simulate", "scene.toml", "--material", "cloth.toml", "--out", "out"], more].concat();
+    Command::new(env!("CARGO_BIN_EXE_fit-cloth")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn said(output: &Output) -> [String; 2] {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap())
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{:?}", said(output)))
+}
+
+#[test]
+fn a_strip_sinks_in_time_and_every_file_is_there() {
+    let folder = folder(SCENE, CLOTH);
+    let output = simulate(folder.path(), &[]);
+    let [words, errors] = said(&output);
+    assert!(output.status.success(), "{errors}");
+    assert!(words.contains("Converged") && words.trim_end().ends_with("Written to out"), "{words}");
+    let out = folder.path().join("out");
+    let frames = fs::read_dir(out.join("frames")).unwrap().count();
+    assert_eq!(frames, 1 + 4);
+    let table = fs::read_to_string(out.join("energies.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 1 + 40);
+    let columns = "time_s,kinetic_j,elastic_j,weight_j,damping_j,wind_j,total_j,numerical_j,newton_iterations,linear_iterations,imbalance_n";
+    assert_eq!(table.lines().next().unwrap(), columns);
+    // What is there, what damping took and what the integrator lost add up to the start.
+    let row = |line: &str| line.split(',').map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<_>>();
+    let [start, end] = [table.lines().nth(1).unwrap(), table.lines().last().unwrap()].map(row);
+    assert!(
+        (start[6] - end[6] - end[4] + end[5] - end[7]).abs() < 1e-9 * start[6].abs(),
+        "{start:?} {end:?}"
+    );
+    assert!(end[1] >= 0.0 && end[3] < start[3] && end[4] > 0.0, "{end:?}");
+    assert!(fs::read_to_string(out.join("plots/shapes.svg")).unwrap().contains("<polygon"));
+    assert!(out.join("mesh.obj").exists());
+    // A second run replaces the first, with its own files only.
+    let output = simulate(folder.path(), &["--format", "npy", "--duration", "0.1", "--json"]);
+    assert_eq!(json(&output)["motion"]["steps"], 10);
+    assert!(out.join("positions.npy").exists() && !out.join("frames").exists());
+}
+
+#[test]
+fn at_rest_it_is_as_long_as_its_weight_makes_it() {
+    let folder = folder(SCENE, CLOTH);
+    let output = simulate(folder.path(), &["--rest", "--json"]);
+    let json = json(&output);
+    assert!(output.status.success() && json["converged"] == true && json["rest"]["stable"] == true, "{json}");
+    // Lumped masses: half a cell's weight at the end, so that the sum is ρ g L²/2k, as of a continuum.
+    let sink = json["droop"]["bottom_edge_sinks_m"].as_f64().unwrap();
+    assert!((sink / (0.2 * 10.0 / (2.0 * 100.0)) - 1.0).abs() < 0.02, "{json}");
+    let force = json["hold_forces_n"][0][2].as_f64().unwrap();
+    assert!((force - 0.2 * 0.25 * 10.0).abs() < 1e-6, "{json}");
+    let out = folder.path().join("out");
+    assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), 2);
+    assert!(!out.join("energies.csv").exists());
+    let output = simulate(folder.path(), &["--rest", "--format", "ply", "--compression", "none", "--json"]);
+    assert_eq!(self::json(&output)["compression"], "none");
+    assert!(fs::read_to_string(out.join("frames/0001.ply")).unwrap().starts_with("ply\n"));
+}
+
+#[test]
+fn what_is_left_out_is_not_there_and_what_may_move_moves() {
+    // Along weft only: the top then stays as high, and is free to close in.
+    let guided =
+        SCENE.replace("edge = \"top\"", "edge = \"top\"\nfree = \"line\"\ndirection = [1.0, 0.0, 0.0]");
+    let fewer = format!("components = [\"stretch-warp\", \"shear\"]\n{guided}");
+    let folder = folder(&fewer, CLOTH);
+    let output = simulate(folder.path(), &["--json", "--duration", "0.02"]);
+    let [_, errors] = said(&output);
+    // Nothing is held that a droop could be measured from.
+    assert_eq!(output.status.code(), Some(3), "{errors}");
+    fs::write(folder.path().join("scene.toml"), fewer.replace("measure = \"droop\"\n", "")).unwrap();
+    let json = json(&simulate(folder.path(), &["--json", "--duration", "0.02"]));
+    assert_eq!(json["components"], serde_json::json!(["stretch-warp", "shear"]));
+    let last = fs::read_to_string(folder.path().join("out/frames/0001.obj")).unwrap();
+    let heights: Vec<f64> = last
+        .lines()
+        .filter_map(|line| line.strip_prefix("v "))
+        .map(|line| line.split(' ').nth(2).unwrap().parse().unwrap())
+        .collect();
+    assert!(heights[8] == 1.0 && heights[9] == 1.0 && heights[0] < 0.0, "{heights:?}");
+}
+
+#[test]
+fn motion_that_leads_to_nowhere_stops_at_its_last_good_state() {
+    // The gust is nothing at first, and beyond all numbers later.
+    let storm = "[wind]\nvelocity_m_s = [0, 1, 0]\ngust_m_s = [0, 1e150, 0]\ngust_period_s = 1.0\n";
+    let folder = folder(&format!("{SCENE}{storm}"), CLOTH);
+    let output = simulate(folder.path(), &["--json"]);
+    let json = json(&output);
+    assert_eq!(output.status.code(), Some(4), "{json}");
+    let motion = &json["motion"];
+    assert!(
+        json["converged"] == false && motion["stopped_at_step"] == motion["steps"].as_u64().unwrap() + 1,
+        "{json}"
+    );
+    let out = folder.path().join("out");
+    for name in ["energies.csv", "simulation.json", "frames/0000.obj"] {
+        let text = fs::read_to_string(out.join(name)).unwrap().to_lowercase();
+        assert!(!["nan", "inf", "null"].iter().any(|word| text.contains(word)), "{name}: {text}");
+    }
+    let [words, _] = said(&simulate(folder.path(), &[]));
+    assert!(words.contains("NOT converged: step") && words.contains("last good state"), "{words}");
+}
+
+/// The exit code is 3, and the error says where and what.
+fn refused(scene: &str, cloth: &str, more: &[&str], place: &str, words: &str) {
+    let folder = folder(scene, cloth);
+    let output = simulate(folder.path(), more);
+    let [_, errors] = said(&output);
+    assert_eq!(output.status.code(), Some(3), "{errors}");
+    assert!(errors.contains(place) && errors.contains(words), "{errors}");
+    assert!(!folder.path().join("out").exists(), "{errors}");
+}
+
+#[test]
+fn bad_scenes_are_refused_with_file_and_line() {
+    let scene = |from: &str, to: &str| {
+        let changed = SCENE.replace(from, to);
+        assert_ne!(changed, SCENE);
+        changed
+    };
+    let bad = |from: &str, to: &str, line: usize, words: &str| {
+        refused(&scene(from, to), CLOTH, &[], &format!("scene.toml:{line} "), words);
+    };
+    bad("duration_s", "duration_ms", 3, "duration_s");
+    bad("duration_s = 0.4", "duration_s = nan", 3, "above 0");
+    bad("-10.0]", "nan]", 2, "finite");
+    bad("\"top\"", "\"topp\"", 11, "top");
+    bad("edge = \"top\"", "nodes = [10]", 11, "0 to 9");
+    bad("edge = \"top\"", "circle = { centre_m = [5.0, 5.0], radius_m = 0.1 }", 10, "no node");
+    bad("warp = [0.0", "warp = [1.0", 9, "across weft");
+    bad("stiffness_s = 0.05", "stiffness_s = -1", 13, "0 or more");
+    bad("\"droop\"", "\"drape-coefficient\"", 6, "circle");
+    bad("name", "components = [\"bend-warp\"]\nname", 1, "cloth has no curve");
+    bad("nodes = [2, 5]", "nodes = [1, 5]", 8, "2 nodes");
+    let single = format!("{SCENE}[solver]\nintegrator = \"runge-kutta\"\nnewton = \"single\"\n");
+    refused(&single, CLOTH, &[], "scene.toml:16 ", "nothing uses");
+    let explicit = format!("{SCENE}[solver]\nintegrator = \"runge-kutta\"\n");
+    refused(&explicit, CLOTH, &[], "scene.toml:4 ", "at most");
+    let unpinned = scene("[[held]]\nedge = \"top\"\n", "").replace("measure = \"droop\"\n", "");
+    refused(&unpinned, CLOTH, &["--rest"], "scene.toml:", "6 rigid motions free");
+}
+
+#[test]
+fn bad_materials_are_refused_with_file_and_line() {
+    let bad = |from: &str, to: &str, place: &str, words: &str| {
+        refused(SCENE, &CLOTH.replace(from, to), &[], place, words);
+    };
+    bad("0.2", "nan", "cloth.toml:2 ", "above 0");
+    bad(
+        "shear = { stiffness_n_per_m = 10.0 }",
+        "shear = { stiffness_n_per_m = nan }",
+        "cloth.toml:7 ",
+        "finite",
+    );
+    bad("shear", "sheer", "cloth.toml:7 ", "sheer");
+    // Stress that falls as strain grows.
+    let falls = CLOTH.replace(
+        "shear = { stiffness_n_per_m = 10.0 }",
+        "shear = { strain = [0.0, 0.1, 0.2], stiffness_n_per_m = [10.0, 9.0, 1.0] }",
+    );
+    refused(SCENE, &falls, &[], "cloth.toml shear", "low-tangent");
+    let folder = folder(SCENE, &falls);
+    assert!(simulate(folder.path(), &["--allow-unstable"]).status.success());
+}
+
+#[test]
+fn springs_need_a_grid_and_other_folders_are_left_alone() {
+    let disc = SCENE
+        .replace(
+            "grid = { width_m = 0.25, height_m = 1.0, nodes = [2, 5] }",
+            "disc = { radius_m = 0.5, rings = 3 }",
+        )
+        .replace("edge = \"top\"", "corner = \"top-left\"");
+    refused(&disc, &CLOTH.replace("soft-constraint", "springs"), &[], "scene.toml:", "grid");
+    let folder = folder(SCENE, CLOTH);
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(folder.path().join("out/notes.txt"), "mine").unwrap();
+    let output = simulate(folder.path(), &[]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(folder.path().join("out/notes.txt").exists());
+    assert_eq!(simulate(folder.path(), &["--duration", "-1"]).status.code(), Some(2));
+    assert_eq!(simulate(folder.path(), &["--rest", "--duration", "1"]).status.code(), Some(2));
+}
