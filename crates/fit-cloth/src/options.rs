@@ -34,7 +34,7 @@ pub struct Options {
 #[derive(Debug, Clone, Subcommand)]
 #[expect(clippy::large_enum_variant, reason = "there is one of them in a run")]
 pub enum Command {
-    /// Turn a laboratory's table into a sequence of a measurement set
+    /// Turn a laboratory's table into a sequence of a measurement set, or into a curve
     Import(Import),
     /// Measure a known cloth on a virtual rig: a measurement set to try a fit on
     Rig(RigOptions),

@@ -94,3 +94,8 @@ fn the_examples_of_curve_scale_run() {
 fn the_examples_of_curve_extend_run() {
     examples_run("curve extend");
 }
+
+#[test]
+fn the_examples_of_import_table_run() {
+    examples_run("import table");
+}

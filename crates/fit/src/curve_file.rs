@@ -18,7 +18,7 @@ use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Model};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How far rows below zero may be from what the model makes of the rows above, as a share of the largest stress.
 const DISAGREEMENT: f64 = 0.01;
@@ -77,6 +77,39 @@ pub struct CurveFile {
 }
 
 impl CurveFile {
+    /// A table of rows that come from elsewhere, without other columns.
+    ///
+    /// * `path`, `lines` — where each row comes from, for messages
+    ///
+    /// # Errors
+    /// No row; strains that do not ascend.
+    pub(crate) fn new(
+        kind: Kind,
+        strains: Vec<f64>,
+        stresses: Vec<f64>,
+        path: &Path,
+        lines: Vec<usize>,
+    ) -> Result<Self> {
+        let band = [None, None];
+        let file = Self { kind, strains, stresses, stiffnesses: None, band, path: path.to_path_buf(), lines };
+        file.check_order()?;
+        Ok(file)
+    }
+
+    fn check_order(&self) -> Result<()> {
+        let strains = &self.strains;
+        if strains.is_empty() {
+            return Err(self.refuse(None, "row", "nothing below the header", "one row at least"));
+        }
+        let Some(row) = (1..strains.len()).find(|&row| strains[row] <= strains[row - 1]) else {
+            return Ok(());
+        };
+        let relation = if strains[row] == strains[row - 1] { "the same as" } else { "below" };
+        let found = format!("{}, {relation} the row before", strains[row]);
+        let expected = format!("above {}: rows in ascending order, each once", strains[row - 1]);
+        Err(self.refuse(Some(row), self.kind.columns()[0], found, expected))
+    }
+
     /// The curve of a component in a model, with a control point at every row from zero on.
     ///
     /// Rows below zero are not control points: how stress is read there is the rule `negative`. They must agree with
