@@ -13,7 +13,7 @@
 use crate::cloth::Cloth;
 use crate::dynamics::{self, Integrator, LinearSolver, Motion, Newton};
 use crate::equilibrium::{self, Equilibrium, Solver};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::material::Curves;
 
 /// How a cloth is let down.
@@ -82,6 +82,14 @@ pub fn descend(
     settings: &Settings,
     watch: &mut dyn FnMut(usize, f64),
 ) -> Result<Descent> {
+    for (field, value, least) in
+        [("step", settings.step, f64::MIN_POSITIVE), ("growth", settings.growth, 1.0)]
+    {
+        if !(value >= least && value.is_finite()) {
+            let expected = "a step above 0 and a growth of 1 or more";
+            return Err(Error::InvalidValue { field, value, expected });
+        }
+    }
     let mut solver = Solver::new(cloth);
     let (mut length, mut near) = (settings.step, NEAR * cloth.mean_edge());
     let (mut steps, mut strongest) = (0, 0.0f64);
