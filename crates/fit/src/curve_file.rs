@@ -6,11 +6,8 @@
 //! ```
 //!
 //! Every row with ε > 0 is a control point. The stiffness at zero, which no stress can tell, stands in the column
-//! `stiffness_n_per_m` or `rigidity_n_m`; without it, the first two stiffnesses are extrapolated on a straight line:
-//!
-//! ```text
-//! k₀ = k₁ − ε₁ (k₂ − k₁)/(ε₂ − ε₁),   not below k₁/2 and not above 2 k₁
-//! ```
+//! `stiffness_n_per_m` or `rigidity_n_m`; without it, it is that of the first row above zero, k₀ = k₁: what interpolation on a
+//! straight line from no stress to that row means, and never below zero where a line through two rows would be.
 
 mod read;
 #[cfg(test)]
@@ -173,7 +170,7 @@ impl CurveFile {
             .collect::<Result<_>>()?;
         let start = match (&self.stiffnesses, at_zero) {
             (Some(stiffnesses), Some(row)) => stiffnesses[row],
-            _ => extrapolated(&self.strains[first..], &secants),
+            _ => secants[0],
         };
         let strains = std::iter::once(0.0).chain(self.strains[first..].iter().map(|strain| scale * strain));
         let stiffnesses = std::iter::once(start).chain(secants).map(|k| k / scale).collect();
@@ -346,13 +343,4 @@ impl CurveFile {
         let line = row.and_then(|row| self.lines.get(row).copied());
         Error::input(&self.path, line, field, found, expected)
     }
-}
-
-/// The stiffness at zero from the first two above it.
-fn extrapolated(strains: &[f64], stiffnesses: &[f64]) -> f64 {
-    let [k1, k2] = [stiffnesses[0], stiffnesses[stiffnesses.len().min(2) - 1]];
-    let [e1, e2] = [strains[0], strains[strains.len().min(2) - 1]];
-    let straight = if e2 > e1 { k1 - e1 * (k2 - k1) / (e2 - e1) } else { k1 };
-    let [low, high] = [0.5 * k1, 2.0 * k1];
-    straight.clamp(low.min(high), low.max(high))
 }
