@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Every row with ε > 0 is a control point. The stiffness at zero, which no stress can tell, stands in the column
-//! `stiffness_n_per_m` or `rigidity_n_m`; without it, it is that of the first row above zero: up
-//! to there the stress runs straight, as near as a spline does.
+//! `stiffness_n_per_m` or `rigidity_n_m`; without it, it is that of the first row above zero, k₀ = k₁: what interpolation on a
+//! straight line from no stress to that row means, and never below zero where a line through two rows would be.
 
 mod read;
 #[cfg(test)]
@@ -170,7 +170,6 @@ impl CurveFile {
             .collect::<Result<_>>()?;
         let start = match (&self.stiffnesses, at_zero) {
             (Some(stiffnesses), Some(row)) => stiffnesses[row],
-            // The stress runs straight to the first row: of what is below, a table says nothing else.
             _ => secants[0],
         };
         let strains = std::iter::once(0.0).chain(self.strains[first..].iter().map(|strain| scale * strain));

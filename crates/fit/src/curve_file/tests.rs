@@ -18,7 +18,7 @@ fn weft(text: &str) -> Result<StiffnessCurve> {
 }
 
 #[test]
-fn rows_are_control_points_and_the_stress_starts_straight() {
+fn rows_are_control_points_and_the_stiffness_at_zero_is_the_first() {
     let found = weft("strain,stress_n_per_m\n0,0\n0.1,12\n0.2,28\n").unwrap();
     assert_eq!(found.strains(), [0.0, 0.1, 0.2]);
     let expected = [120.0, 120.0, 140.0];
