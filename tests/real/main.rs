@@ -14,3 +14,4 @@ mod nist;
 mod picture_frame;
 mod strips;
 mod synthetic;
+mod wool;

@@ -34,10 +34,8 @@ fn wool() -> Curves {
             table.iter().filter(|row| row[0] == name).map(|row| [&row[2], &row[3]].map(|f| number(f)));
         let above: Vec<[f64; 2]> = points.filter(|[strain, _]| *strain > 1e-9).collect();
         let secants: Vec<f64> = above.iter().map(|[strain, stress]| stress / strain).collect();
-        // The stress at zero does not tell the stiffness there: on a straight line from the first two, at least the first.
-        let start = (2.0 * secants[0] - secants[1]).max(0.5 * secants[0]);
         let strains = std::iter::once(0.0).chain(above.iter().map(|point| point[0])).collect();
-        let stiffnesses = std::iter::once(start).chain(secants).collect();
+        let stiffnesses = std::iter::once(secants[0]).chain(secants.iter().copied()).collect();
         let negative = Model::Stvk.negative_strain(component, Compression::None);
         (component, StiffnessCurve::new(strains, stiffnesses, negative).expect("a curve"))
     };

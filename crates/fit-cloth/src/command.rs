@@ -1,6 +1,8 @@
 //! The commands, one file each.
 
+pub mod check;
 pub mod compare;
+pub mod curve;
 pub mod fit;
 pub mod goal;
 pub mod import;
@@ -20,6 +22,8 @@ use std::io::Write;
 pub enum Outcome {
     /// As it should.
     Done,
+    /// The check was made, and what was checked has a defect.
+    Defective,
     /// With a result that is written, but marked as not converged.
     NotConverged,
 }
@@ -36,6 +40,8 @@ pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failur
         Command::Shear(flags) => fit::run(Goal::Shear, flags, options.telling, output),
         Command::Bend(flags) => fit::run(Goal::Bend, flags, options.telling, output),
         Command::Fit(flags) => fit::run(Goal::All, flags, options.telling, output),
+        Command::Check(check) => check::run(check, options.telling, output),
+        Command::Curve(curve) => curve::run(curve, options.telling, output),
         Command::Compare(compare) => compare::run(compare, options.telling, output),
         Command::Simulate(simulate) => simulate::run(simulate, options.telling, output),
         Command::Study(study) => study::run(study, options.telling, output),

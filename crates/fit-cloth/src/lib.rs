@@ -5,7 +5,7 @@
 //! | 0 | done, and converged where something was solved |
 //! | 1 | the operating system refused |
 //! | 2 | the command line makes no sense |
-//! | 3 | bad input: a file, a measurement or a setting |
+//! | 3 | bad input: a file, a measurement or a setting; a curve that `check` finds a defect in |
 //! | 4 | not converged; what was reached is written, and marked so |
 //! | 130 | interrupted |
 
@@ -17,6 +17,7 @@ pub mod progress;
 pub mod scene;
 pub mod simulation;
 pub mod study;
+pub mod subject;
 pub mod text;
 
 use clap::Parser;
@@ -40,6 +41,7 @@ pub fn main() -> ExitCode {
     let outcome = command::run(&options, &mut output);
     match outcome.and_then(|outcome| output.flush().map_err(Failure::from).map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Defective) => ExitCode::from(3),
         Ok(Outcome::NotConverged) => ExitCode::from(4),
         // A reader that has read enough, such as `head`.
         Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,

@@ -7,7 +7,9 @@ pub use choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice
 pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
 pub(crate) use flags::{refuse_within, use_threads};
 
+use crate::command::check::CheckOptions;
 use crate::command::compare::CompareOptions;
+use crate::command::curve::Curve;
 use crate::command::goal;
 use crate::command::import::Import;
 use crate::command::rig::RigOptions;
@@ -32,7 +34,7 @@ pub struct Options {
 #[derive(Debug, Clone, Subcommand)]
 #[expect(clippy::large_enum_variant, reason = "there is one of them in a run")]
 pub enum Command {
-    /// Turn a laboratory's table into a sequence of a measurement set
+    /// Turn a laboratory's table into a sequence of a measurement set, or into a curve
     Import(Import),
     /// Measure a known cloth on a virtual rig: a measurement set to try a fit on
     Rig(RigOptions),
@@ -52,6 +54,10 @@ pub enum Command {
     Compare(CompareOptions),
     /// Try fitted curves on motions and samples that the fit did not see
     Validate(ValidateOptions),
+    /// Check that curves can be simulated, and repair those that cannot
+    Check(CheckOptions),
+    /// Edit a curve: make it wider, stronger, longer
+    Curve(Curve),
     /// Simulate a scene of a material: hang it, drape it, fly it
     Simulate(SimulateOptions),
     /// Study error against run time, and what each part of a scene saves and costs

@@ -1,5 +1,6 @@
 //! What a person reads: tables, and a verdict in words.
 
+mod check;
 mod comparison;
 mod residuals;
 mod simulation;
@@ -9,6 +10,7 @@ mod summary;
 mod validation;
 mod verdict;
 
+pub use check::{check, repaired};
 pub use comparison::comparison;
 pub use residuals::residuals;
 pub use simulation::simulation;

@@ -6,11 +6,8 @@
 //! ```
 //!
 //! Every row with ε > 0 is a control point. The stiffness at zero, which no stress can tell, stands in the column
-//! `stiffness_n_per_m` or `rigidity_n_m`; without it, the first two stiffnesses are extrapolated on a straight line:
-//!
-//! ```text
-//! k₀ = k₁ − ε₁ (k₂ − k₁)/(ε₂ − ε₁),   not below k₁/2 and not above 2 k₁
-//! ```
+//! `stiffness_n_per_m` or `rigidity_n_m`; without it, it is that of the first row above zero: up
+//! to there the stress runs straight, as near as a spline does.
 
 mod read;
 #[cfg(test)]
@@ -21,7 +18,7 @@ use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Model};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How far rows below zero may be from what the model makes of the rows above, as a share of the largest stress.
 const DISAGREEMENT: f64 = 0.01;
@@ -80,6 +77,39 @@ pub struct CurveFile {
 }
 
 impl CurveFile {
+    /// A table of rows that come from elsewhere, without other columns.
+    ///
+    /// * `path`, `lines` — where each row comes from, for messages
+    ///
+    /// # Errors
+    /// No row; strains that do not ascend.
+    pub(crate) fn new(
+        kind: Kind,
+        strains: Vec<f64>,
+        stresses: Vec<f64>,
+        path: &Path,
+        lines: Vec<usize>,
+    ) -> Result<Self> {
+        let band = [None, None];
+        let file = Self { kind, strains, stresses, stiffnesses: None, band, path: path.to_path_buf(), lines };
+        file.check_order()?;
+        Ok(file)
+    }
+
+    fn check_order(&self) -> Result<()> {
+        let strains = &self.strains;
+        if strains.is_empty() {
+            return Err(self.refuse(None, "row", "nothing below the header", "one row at least"));
+        }
+        let Some(row) = (1..strains.len()).find(|&row| strains[row] <= strains[row - 1]) else {
+            return Ok(());
+        };
+        let relation = if strains[row] == strains[row - 1] { "the same as" } else { "below" };
+        let found = format!("{}, {relation} the row before", strains[row]);
+        let expected = format!("above {}: rows in ascending order, each once", strains[row - 1]);
+        Err(self.refuse(Some(row), self.kind.columns()[0], found, expected))
+    }
+
     /// The curve of a component in a model, with a control point at every row from zero on.
     ///
     /// Rows below zero are not control points: how stress is read there is the rule `negative`. They must agree with
@@ -140,7 +170,8 @@ impl CurveFile {
             .collect::<Result<_>>()?;
         let start = match (&self.stiffnesses, at_zero) {
             (Some(stiffnesses), Some(row)) => stiffnesses[row],
-            _ => extrapolated(&self.strains[first..], &secants),
+            // The stress runs straight to the first row: of what is below, a table says nothing else.
+            _ => secants[0],
         };
         let strains = std::iter::once(0.0).chain(self.strains[first..].iter().map(|strain| scale * strain));
         let stiffnesses = std::iter::once(start).chain(secants).map(|k| k / scale).collect();
@@ -313,13 +344,4 @@ impl CurveFile {
         let line = row.and_then(|row| self.lines.get(row).copied());
         Error::input(&self.path, line, field, found, expected)
     }
-}
-
-/// The stiffness at zero from the first two above it.
-fn extrapolated(strains: &[f64], stiffnesses: &[f64]) -> f64 {
-    let [k1, k2] = [stiffnesses[0], stiffnesses[stiffnesses.len().min(2) - 1]];
-    let [e1, e2] = [strains[0], strains[strains.len().min(2) - 1]];
-    let straight = if e2 > e1 { k1 - e1 * (k2 - k1) / (e2 - e1) } else { k1 };
-    let [low, high] = [0.5 * k1, 2.0 * k1];
-    straight.clamp(low.min(high), low.max(high))
 }

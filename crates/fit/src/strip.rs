@@ -14,12 +14,14 @@
 
 mod branch;
 mod column;
+mod force_table;
 mod set;
 mod settings;
 #[cfg(test)]
 mod tests;
 
 pub use column::Column;
+pub use force_table::{ForceTable, Measure, read_force_table};
 pub use set::{Added, Sample, add_to_set};
 pub use settings::{Direction, Extension, StripTest};
 
@@ -29,6 +31,7 @@ use crate::io::table::Table;
 use branch::{numbered, phases};
 use column::{Quantity, Series};
 use nalgebra::{Isometry3, Vector3};
+use settings::LARGEST;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
@@ -103,7 +106,7 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
         None => table.column(BRANCH),
     };
     let mut readings = Vec::new();
-    for row in rows(table, test)? {
+    for row in chosen_rows(table, test.rows.as_ref())? {
         let value = extension.value(table, row)?;
         let separation = match test.extension {
             Extension::Separation(_) => value,
@@ -133,12 +136,12 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
 }
 
 /// The rows that may be looked at, from 0.
-fn rows(table: &Table, test: &StripTest) -> Result<Range<usize>> {
+fn chosen_rows(table: &Table, rows: Option<&RangeInclusive<usize>>) -> Result<Range<usize>> {
     let count = table.rows();
     if count == 0 {
         return Err(table.incomplete("row", "nothing below the header", "one row at least"));
     }
-    let Some(rows) = &test.rows else { return Ok(0..count) };
+    let Some(rows) = rows else { return Ok(0..count) };
     let (first, last) = (*rows.start(), *rows.end());
     if first == 0 || first > last.min(count) || (last > count && last != usize::MAX) {
         let last = if last == usize::MAX { "the last".into() } else { last.to_string() };

@@ -7,6 +7,7 @@ use crate::options::{FitFlags, Telling, refuse_within};
 use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::text;
+use cloth_fit::check::refuse_unstable;
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::incremental::{self, FitReport};
@@ -80,6 +81,9 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     };
     refuse_within("--known", path, folder)?;
     let file = MaterialFile::read(path)?;
+    if !flags.allow_unstable {
+        refuse_unstable(&file.curves()?, path)?;
+    }
     for settings in flags.model.models().into_iter().map(|model| flags.settings(model)) {
         if file.model != settings.model {
             return refuse("model", file.model.to_string(), format!("{}, as --model says", settings.model));

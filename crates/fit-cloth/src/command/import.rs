@@ -1,6 +1,7 @@
-//! `fit-cloth import`: a laboratory's table into a measurement set.
+//! `fit-cloth import`: a laboratory's table into a measurement set, or into a curve.
 
 pub mod strip;
+pub mod table;
 
 use super::Outcome;
 use crate::failure::Failure;
@@ -8,6 +9,7 @@ use crate::options::Telling;
 use clap::{Args, Subcommand};
 use std::io::Write;
 use strip::StripOptions;
+use table::TableOptions;
 
 const EXAMPLE: &str = "\
 Example:
@@ -15,7 +17,7 @@ Example:
     --areal-density-kg-m2 0.3 --direction weft --gauge-m 0.08 --width-m 0.04 \\
     --separation clamp_distance_m --force force_N
 
-fit-cloth import strip --help explains every option.";
+fit-cloth import strip --help and fit-cloth import table --help explain every option.";
 
 /// `fit-cloth import`.
 #[derive(Debug, Clone, Args)]
@@ -31,6 +33,8 @@ pub struct Import {
 pub enum ImportTable {
     /// A tensile machine's table: a strip pulled between two clamps
     Strip(StripOptions),
+    /// A strip's force over elongation, or a shear test's, as a stress-strain curve, without a fit
+    Table(TableOptions),
 }
 
 /// Imports a table.
@@ -40,5 +44,6 @@ pub enum ImportTable {
 pub fn run(import: &Import, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &import.table {
         ImportTable::Strip(options) => strip::run(options, telling, output),
+        ImportTable::Table(options) => table::run(options, telling, output),
     }
 }

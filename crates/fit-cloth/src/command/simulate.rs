@@ -9,13 +9,12 @@ use crate::scene::Scene;
 use crate::simulation::{self, Simulation};
 use crate::text;
 use clap::{Args, ValueEnum};
+use cloth_fit::check::refuse_unstable;
 use cloth_fit::error::Error;
 use cloth_fit::io::ShapeFormat;
 use cloth_fit::material::Material;
 use cloth_fit::result::check_output;
 use cloth_fit::store::replace_folder;
-use cloth_sim::curve::soundness::{Context, Finding, check};
-use cloth_sim::material::Component;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -94,7 +93,10 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
         None => material,
     };
     if !options.allow_unstable {
-        options.refuse_unstable(&material, &scene.components(&material)?)?;
+        // Only those that the scene takes.
+        let parts = scene.components(&material)?;
+        let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
+        refuse_unstable(&curves.collect(), &options.material)?;
     }
     let simulation = options.simulate(&scene, &material, telling)?;
     replace_folder(&folder, |temporary| {
@@ -112,22 +114,6 @@ impl SimulateOptions {
         self.out.clone().unwrap_or_else(|| {
             PathBuf::from("out").join(self.scene.file_stem().unwrap_or("simulation".as_ref()))
         })
-    }
-
-    /// Refuses curves that can go wrong by their shape.
-    fn refuse_unstable(&self, material: &Material, components: &[Component]) -> Result<(), Error> {
-        let findings =
-            components.iter().filter_map(|&component| Some((component, material.curves.get(component)?)));
-        for (component, curve) in findings {
-            if let Some(finding) = check(curve, &Context::default()).into_iter().find(Finding::is_unstable) {
-                let [from, to] = finding.strains;
-                let found =
-                    format!("{} from strain {from} to {to} ({})", finding.kind, finding.consequence());
-                let expected = "a curve whose tangent is above a thousandth of its largest stiffness, or --allow-unstable";
-                return Err(Error::input(&self.material, None, component.to_string(), found, expected));
-            }
-        }
-        Ok(())
     }
 
     fn simulate(&self, scene: &Scene, material: &Material, telling: Telling) -> Result<Simulation, Error> {

@@ -22,29 +22,9 @@ impl CurveFile {
         let column = |place: usize| -> Result<Vec<f64>> {
             (0..table.rows()).map(|row| table.number(row, place)).collect()
         };
-        let strains = column(x)?;
-        if strains.is_empty() {
-            return Err(table.incomplete("row", "nothing below the header", "one row at least"));
-        }
-        if let Some(row) = (1..strains.len()).find(|&row| strains[row] <= strains[row - 1]) {
-            let relation = if strains[row] == strains[row - 1] { "the same as" } else { "below" };
-            let found = format!("{}, {relation} the row before", strains[row]);
-            return Err(table.invalid(
-                row,
-                axis,
-                found,
-                format!("above {}: rows in ascending order, each once", strains[row - 1]),
-            ));
-        }
         let [stiffnesses, low, high] = optional.map(|place| place.map(column).transpose());
-        Ok(Self {
-            kind,
-            strains,
-            stresses: column(y)?,
-            stiffnesses: stiffnesses?,
-            band: [low?, high?],
-            path: path.to_path_buf(),
-            lines: (0..table.rows()).map(|row| table.line(row)).collect(),
-        })
+        let lines = (0..table.rows()).map(|row| table.line(row)).collect();
+        let file = Self::new(kind, column(x)?, column(y)?, path, lines)?;
+        Ok(Self { stiffnesses: stiffnesses?, band: [low?, high?], ..file })
     }
 }

@@ -29,7 +29,10 @@ pub(super) struct HandWritten {
 
 /// A curve: a constant, control points, or a table beside the file.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table: { stiffness_n_per_m = … }, of bending { rigidity_n_m = … }, or { file = \"….csv\" }"
+)]
 struct Points {
     #[serde(default)]
     strain: Option<Vec<f64>>,

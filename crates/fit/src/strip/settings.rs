@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
 /// No strip is longer or wider, m.
-const LARGEST: f64 = 10.0;
+pub(super) const LARGEST: f64 = 10.0;
 
 /// How a strip was cut: which way it was pulled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

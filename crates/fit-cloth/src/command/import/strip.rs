@@ -96,6 +96,18 @@ pub struct ExtensionOptions {
     pub strain: Option<Column>,
 }
 
+impl ExtensionOptions {
+    /// The column that was named.
+    pub(super) fn chosen(&self) -> Extension {
+        let Self { separation, displacement, strain } = self.clone();
+        separation
+            .map(Extension::Separation)
+            .or(displacement.map(Extension::Displacement))
+            .or(strain.map(Extension::Strain))
+            .expect("clap requires one of the group")
+    }
+}
+
 /// Which way the strip was pulled.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum StripDirection {
@@ -159,12 +171,7 @@ fn strip_test(options: &StripOptions) -> StripTest {
         StripDirection::Warp => Direction::Warp,
         StripDirection::Bias => Direction::Bias,
     };
-    let ExtensionOptions { separation, displacement, strain } = options.extension.clone();
-    let extension = separation
-        .map(Extension::Separation)
-        .or(displacement.map(Extension::Displacement))
-        .or(strain.map(Extension::Strain))
-        .expect("clap requires one of the group");
+    let extension = options.extension.chosen();
     let defaults =
         StripTest::new(direction, options.gauge_m, options.width_m, extension, options.force.clone());
     StripTest {
@@ -203,13 +210,13 @@ fn ranges(sequence: &Sequence, gauge: f64) -> [[f64; 2]; 2] {
 }
 
 /// `COLUMN[:UNIT]`
-fn column(text: &str) -> Result<Column, String> {
+pub(super) fn column(text: &str) -> Result<Column, String> {
     let column = Column::from(text);
     if column.name.is_empty() { Err("a column's name is missing".into()) } else { Ok(column) }
 }
 
 /// `FIRST-LAST` or `FIRST-`
-fn rows(text: &str) -> Result<RangeInclusive<usize>, String> {
+pub(super) fn rows(text: &str) -> Result<RangeInclusive<usize>, String> {
     let (first, last) =
         text.split_once('-').ok_or("two row numbers with - between them, such as 3-90 or 3-")?;
     let number = |text: &str| text.trim().parse().map_err(|_| format!("{text:?} is no row number"));

@@ -1,0 +1,135 @@
+//! `fit-cloth check`: whether curves can be simulated, and the nearest that can.
+
+use super::{Outcome, tell};
+use crate::failure::Failure;
+use crate::options::Telling;
+use crate::subject::{Reading, Source, Subject, read, write};
+use crate::text;
+use clap::Args;
+use cloth_fit::error::Error;
+use cloth_fit::repair::{Repair, repair};
+use cloth_sim::curve::soundness::{Finding, Kind};
+use serde_json::{Map, Value, json};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Its help.
+pub const EXAMPLE: &str = "\
+Exit code 0: sound. 3: FILE has a defect, also where --repair has written a sound curve: the code is about FILE.
+
+Examples:
+  fit-cloth check fixtures/curves/weft.csv
+  fit-cloth check fixtures/curves/kinked.csv --repair mended.csv
+  fit-cloth check mended.csv
+  fit-cloth check fixtures/curves/shear.csv --component shear";
+
+/// `fit-cloth check`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct CheckOptions {
+    /// A material.json, or a curve's table: strain,stress_n_per_m or curvature_per_m,moment_n
+    pub file: PathBuf,
+    /// Write the nearest stable curves in the form of FILE
+    #[arg(long, value_name = "OUT")]
+    pub repair: Option<PathBuf>,
+    /// How to read it.
+    #[command(flatten)]
+    pub reading: Reading,
+}
+
+/// Checks curves, and repairs them if asked to.
+///
+/// # Errors
+/// A bad file; a curve that cannot be repaired; what the operating system refuses.
+pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let (source, subjects) = read(&options.file, &options.reading)?;
+    let repairs = match &options.repair {
+        Some(out) => Some(write_repairs(options, out, source, &subjects)?),
+        None => None,
+    };
+    let findings: Vec<Vec<Finding>> = subjects.iter().map(Subject::findings).collect();
+    let sound = findings.iter().flatten().all(|finding| !finding.is_defect());
+    let words =
+        text::check(&options.file, &subjects, &findings, repairs.as_deref(), options.repair.as_deref());
+    let json = json(options, &subjects, &findings, repairs.as_deref());
+    tell(telling, output, &words, &json)?;
+    Ok(if sound { Outcome::Done } else { Outcome::Defective })
+}
+
+/// The repairs, written.
+fn write_repairs(
+    options: &CheckOptions,
+    out: &Path,
+    source: Source,
+    subjects: &[Subject],
+) -> Result<Vec<Repair>, Failure> {
+    let repairs: Vec<Repair> = subjects
+        .iter()
+        .map(|subject| {
+            repair(&subject.curve, &subject.context).map_err(|reason| {
+                let expected = "a curve that a repair can mend; nothing is written";
+                Error::input(&options.file, None, &subject.name, reason.to_string(), expected)
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    let text = match source {
+        Source::Table(file) => match &repairs[..] {
+            [repair] if !repair.is_unchanged() => file.with_curve(&repair.curve).to_csv(),
+            _ => file.to_csv(),
+        },
+        Source::Material(mut file) => {
+            for (subject, repair) in
+                subjects.iter().zip(&repairs).filter(|(_, repair)| !repair.is_unchanged())
+            {
+                file.set_curve(subject.component, &repair.curve, &text::repaired(subject, repair));
+            }
+            file.to_json()
+        }
+    };
+    write("--repair", out, &options.file, &text)?;
+    Ok(repairs)
+}
+
+fn json(
+    options: &CheckOptions,
+    subjects: &[Subject],
+    findings: &[Vec<Finding>],
+    repairs: Option<&[Repair]>,
+) -> Value {
+    let curve = |(index, subject): (usize, &Subject)| {
+        let scale = subject.strain_per_unit;
+        let finding = |finding: &Finding| {
+            // A stiffness over the file's own strain; ratios and shares have no scale. JSON has no infinity.
+            let factor =
+                if matches!(finding.kind, Kind::TangentRatio | Kind::Unvisited) { 1.0 } else { scale };
+            let strains =
+                finding.strains.map(|strain| Some(strain / scale).filter(|strain| strain.is_finite()));
+            json!({
+                "kind": finding.kind.to_string(),
+                "severity": finding.severity().to_string(),
+                "strain": strains,
+                "value": factor * finding.value,
+                "limit": factor * finding.limit,
+                "consequence": finding.consequence(),
+            })
+        };
+        let mut entry = json!({
+            "sound": findings[index].iter().all(|finding| !finding.is_defect()),
+            "findings": findings[index].iter().map(finding).collect::<Vec<_>>(),
+        });
+        if let Some(repair) = repairs.and_then(|repairs| repairs.get(index)) {
+            entry["repair"] = json!({
+                "rms_stress": repair.rms,
+                "largest_stress": repair.largest,
+                "at_strain": repair.at / scale,
+            });
+        }
+        (subject.name.clone(), entry)
+    };
+    json!({
+        "file": options.file.display().to_string(),
+        "sound": findings.iter().flatten().all(|finding| !finding.is_defect()),
+        "curves": Value::Object(subjects.iter().enumerate().map(curve).collect::<Map<_, _>>()),
+        "repaired": options.repair.as_ref().map(|path| path.display().to_string()),
+    })
+}

@@ -1,0 +1,82 @@
+//! `fit-cloth curve extend`: a straight piece of stress at the end.
+
+use super::{finish, in_material, one};
+use crate::command::Outcome;
+use crate::failure::Failure;
+use crate::options::Telling;
+use crate::subject::{Reading, Source};
+use clap::Args;
+use cloth_fit::curve_edit::{Extension, Trend, extended};
+use std::io::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "\
+In a simulation a curve goes on straight beyond its last point, with its last tangent: so does it here, unless a slope or \
+a stress at the end is given. With --from, what the curve has beyond that strain gives way to the straight piece.
+
+The edits of Strohkorb 2019, figure 9 (weft: a linear trend from half its range on, and twice the greatest stress) and \
+figure 10 (warp: strain steps 10 times as large, then the same), on curves of ours:
+
+Examples:
+  fit-cloth curve extend fixtures/curves/weft.csv --from 0.057 --to 0.1 \\
+    --stress-at-end 950 --out weft-trend.csv
+  fit-cloth curve scale fixtures/curves/warp.csv --strain 10 --out warp-wide.csv
+  fit-cloth curve extend warp-wide.csv --from 0.08 --to 0.13 --stress-at-end 400 \\
+    --out warp-trend.csv
+  fit-cloth curve extend fixtures/curves/bend.csv --to 150 --slope 2e-6 --points 5 \\
+    --out bend-trend.csv";
+
+/// `fit-cloth curve extend`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE, allow_negative_numbers = true)]
+pub struct ExtendOptions {
+    /// A curve's table, or a material.json (with --component)
+    pub file: PathBuf,
+    /// Strain (curvature) at which the straight piece ends
+    #[arg(long, value_name = "STRAIN")]
+    pub to: f64,
+    /// Strain (curvature) at which it begins [default: the curve's last]
+    #[arg(long, value_name = "STRAIN")]
+    pub from: Option<f64>,
+    /// Its slope [default: the curve's tangent where the piece begins]
+    #[arg(long, value_name = "N_PER_M")]
+    pub slope: Option<f64>,
+    /// Its stress (moment) at the end
+    #[arg(long, value_name = "STRESS", conflicts_with = "slope")]
+    pub stress_at_end: Option<f64>,
+    /// How many points it adds [default: as near to each other as the curve's own are on the mean]
+    #[arg(long, value_name = "COUNT")]
+    pub points: Option<usize>,
+    /// Where to write, in the form of FILE
+    #[arg(long, value_name = "OUT")]
+    pub out: PathBuf,
+    /// How to read it.
+    #[command(flatten)]
+    pub reading: Reading,
+}
+
+/// Extends a curve.
+///
+/// # Errors
+/// A bad file or option; what the operating system refuses.
+pub fn run(options: &ExtendOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let (source, subject) = one(&options.file, &options.reading)?;
+    let scale = subject.strain_per_unit;
+    let trend = match (options.slope, options.stress_at_end) {
+        (Some(slope), _) => Trend::Slope(slope / scale),
+        (None, Some(stress)) => Trend::StressAtEnd(stress),
+        (None, None) => Trend::Tangent,
+    };
+    let from = options.from.map(|strain| scale * strain);
+    let extension = Extension { from, to: scale * options.to, trend, points: options.points };
+    let edited = extended(&subject.curve, &extension)?;
+    let text = match source {
+        Source::Table(file) => file.with_points(&edited).to_csv(),
+        Source::Material(file) => {
+            let last = subject.curve.strains()[subject.curve.len() - 1];
+            let change = format!("straight from strain {} to {}", from.unwrap_or(last), options.to);
+            in_material(*file, &subject, &edited, &change)
+        }
+    };
+    finish([&options.file, &options.out], &subject, (&edited, &text), telling, output)
+}

@@ -1,0 +1,123 @@
+//! `fit-cloth import table`: force over elongation into stress over strain.
+
+use super::strip::{ExtensionOptions, column, rows};
+use crate::command::{Outcome, tell, warn};
+use crate::failure::Failure;
+use crate::options::Telling;
+use crate::subject::write;
+use clap::{Args, ValueEnum};
+use cloth_fit::check::context;
+use cloth_fit::curve_edit::largest_stress;
+use cloth_fit::strip::{Column, ForceTable, Measure, read_force_table};
+use cloth_sim::curve::soundness::{Finding, check};
+use cloth_sim::material::{Component, Compression, Model};
+use serde_json::json;
+use std::io::Write;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "\
+A COLUMN is its name in the header, exactly; its unit is the ending of that name (travel_mm, Load (N), Strain [%]) or \
+stands behind a colon (load:N). Rows must ascend: of a cyclic test take one loading with --rows.
+
+Example:
+  fit-cloth import table fixtures/curves/pull.csv --width-m 0.05 --gauge-m 0.2 \\
+    --force load_N --displacement travel_mm --measure green --out pulled.csv";
+
+/// `fit-cloth import table`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE, allow_negative_numbers = true)]
+pub struct TableOptions {
+    /// The table: comma-separated values with a header
+    pub file: PathBuf,
+    /// Width of the strip at rest, across the pull; of a sheared sheet along the bars
+    #[arg(long, value_name = "M")]
+    pub width_m: f64,
+    /// Distance of the clamps at rest; not needed with --strain
+    #[arg(long, value_name = "M")]
+    pub gauge_m: Option<f64>,
+    /// How far it was pulled, or the bars were shifted.
+    #[command(flatten)]
+    pub extension: ExtensionOptions,
+    /// Column of the load cell's reading
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub force: Column,
+    /// Rows to take, such as 3-90 or 3-, both ends included; 1 is the first below the header [default: all]
+    #[arg(long, value_name = "FIRST-LAST", value_parser = rows)]
+    pub rows: Option<RangeInclusive<usize>>,
+    /// Which strain and stress to write: that of the model that will read it
+    #[arg(long, value_enum)]
+    pub measure: MeasureChoice,
+    /// Tension per width across the bars of a shear tester; what it adds to the force is taken off
+    #[arg(long, value_name = "N_PER_M", default_value_t = 0.0)]
+    pub tension_n_per_m: f64,
+    /// Where to write the curve
+    #[arg(long, value_name = "OUT")]
+    pub out: PathBuf,
+}
+
+/// Which strain and stress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MeasureChoice {
+    /// Green strain, second Piola-Kirchhoff stress F/(w λ): model stvk
+    Green,
+    /// Engineering strain, nominal stress F/w: models soft-constraint and springs
+    Engineering,
+    /// Shear between parallel bars, F/w: all models
+    Shear,
+}
+
+/// Imports a table as a curve.
+///
+/// # Errors
+/// The table or an option is not what it should be; the operating system refuses.
+pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let tension = options.tension_n_per_m;
+    let (measure, component, model, words) = match options.measure {
+        MeasureChoice::Green => {
+            (Measure::Green, Component::StretchWeft, Model::Stvk, "Green strain, for the model stvk")
+        }
+        MeasureChoice::Engineering => {
+            let words = "engineering strain, for the models soft-constraint and springs";
+            (Measure::Engineering, Component::StretchWeft, Model::SoftConstraint, words)
+        }
+        MeasureChoice::Shear => {
+            (Measure::Shear { tension }, Component::Shear, Model::Stvk, "shear, for all models")
+        }
+    };
+    let test = ForceTable {
+        width: options.width_m,
+        gauge: options.gauge_m,
+        extension: options.extension.chosen(),
+        force: options.force.clone(),
+        rows: options.rows.clone(),
+        measure,
+    };
+    let file = read_force_table(&options.file, &test)?;
+    let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
+    write("--out", &options.out, &options.file, &file.to_csv())?;
+    let findings = check(&curve, &context(model, component, None));
+    let defects: Vec<&Finding> = findings.iter().filter(|finding| finding.is_defect()).collect();
+    for finding in &defects {
+        warn(telling, &format!("{finding}: {}", finding.consequence()));
+    }
+    let strain = [file.strains[0], file.strains[file.strains.len() - 1]];
+    let largest = largest_stress(&curve);
+    let sound = if defects.is_empty() { "sound" } else { "NOT sound: fit-cloth check --repair mends it" };
+    let text = format!(
+        "{} rows, strain {:.4} to {:.4}, stress up to {largest:.4} N/m: {words}\n{sound}\nWritten to {}",
+        file.strains.len(),
+        strain[0],
+        strain[1],
+        options.out.display()
+    );
+    let json = json!({
+        "written": options.out.display().to_string(),
+        "rows": file.strains.len(),
+        "strain": strain,
+        "largest_stress_n_per_m": largest,
+        "sound": defects.is_empty(),
+    });
+    tell(telling, output, &text, &json)?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,171 @@
+//! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
+
+use clap::{Args, ValueEnum};
+use cloth_fit::check::context;
+use cloth_fit::curve_file::{CurveFile, Kind};
+use cloth_fit::error::{Error, Result};
+use cloth_fit::material_file::MaterialFile;
+use cloth_fit::store::write_file;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::curve::soundness::{Context, Finding, check};
+use cloth_sim::material::{Component, Compression, Model};
+use std::path::Path;
+
+/// How a table of one curve is to be read.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Reading")]
+pub struct Reading {
+    /// The curve's component: which of a material.json [check: all]; of a table only where rows lie below zero, which
+    /// stretch and shear read differently
+    #[arg(long, value_enum)]
+    pub component: Option<ComponentChoice>,
+    /// The model whose strains a table is over
+    #[arg(long, value_enum, default_value_t = TableModel::Stvk)]
+    pub model: TableModel,
+}
+
+/// One of the six components.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ComponentChoice {
+    /// Stretch along weft
+    StretchWeft,
+    /// Stretch along warp
+    StretchWarp,
+    /// Shear between the yarns
+    Shear,
+    /// Bending along weft
+    BendWeft,
+    /// Bending along warp
+    BendWarp,
+    /// Bending along neither
+    BendDiagonal,
+}
+
+impl From<ComponentChoice> for Component {
+    fn from(choice: ComponentChoice) -> Self {
+        Self::ALL[choice as usize]
+    }
+}
+
+/// One model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TableModel {
+    /// Green strain, hinges
+    Stvk,
+    /// Engineering strain, hinges
+    SoftConstraint,
+    /// Engineering strain of springs
+    Springs,
+}
+
+impl From<TableModel> for Model {
+    fn from(choice: TableModel) -> Self {
+        Self::ALL[choice as usize]
+    }
+}
+
+/// Where curves came from, and go back to.
+#[derive(Debug, Clone)]
+pub enum Source {
+    /// All curves of a fit.
+    Material(Box<MaterialFile>),
+    /// One curve.
+    Table(CurveFile),
+}
+
+/// A curve of a file.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// Its component; of a table, where that matters.
+    pub component: Component,
+    /// What to call it.
+    pub name: String,
+    /// The curve.
+    pub curve: StiffnessCurve,
+    /// What it is checked against.
+    pub context: Context,
+    /// The model's strain over the file's: 3 for a table over curvature, else 1.
+    pub strain_per_unit: f64,
+    /// What the file calls the strain, with its unit.
+    pub axis: &'static str,
+    /// The unit of its stresses.
+    pub unit: &'static str,
+}
+
+impl Subject {
+    /// All that is to be said of it.
+    pub fn findings(&self) -> Vec<Finding> {
+        check(&self.curve, &self.context)
+    }
+}
+
+/// Reads a `material.json`, known by its ending, or a table.
+///
+/// # Errors
+/// A bad file; a component that it does not have; a table with rows below zero without a component.
+pub fn read(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>)> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
+        return read_material(path, reading);
+    }
+    let file = CurveFile::read(path)?;
+    let component = match (reading.component, file.kind) {
+        (Some(component), _) => component.into(),
+        (None, Kind::Bending) => Component::BendWeft,
+        (None, Kind::Membrane) if file.is_two_sided() => {
+            let expected = "--component, since stretch and shear read rows below zero differently";
+            return Err(Error::input(path, None, file.kind.columns()[0], "rows below zero", expected));
+        }
+        (None, Kind::Membrane) => Component::StretchWeft,
+    };
+    let model = reading.model.into();
+    let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let (axis, unit) = match file.kind {
+        Kind::Membrane => ("strain", "N/m"),
+        Kind::Bending => ("curvature [1/m]", "N"),
+    };
+    let context = context(model, component, None);
+    let subject =
+        Subject { component, name, curve, context, strain_per_unit: file.strain_per_unit(), axis, unit };
+    Ok((Source::Table(file), vec![subject]))
+}
+
+fn read_material(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>)> {
+    let file = MaterialFile::read(path)?;
+    let curves = file.curves()?;
+    let wanted: Option<Component> = reading.component.map(Component::from);
+    let components = curves.components().filter(|component| wanted.is_none_or(|wanted| wanted == *component));
+    let subjects: Vec<Subject> = components
+        .filter_map(|component| {
+            let hinges = component.is_bending() && file.model != Model::Springs;
+            Some(Subject {
+                component,
+                name: component.to_string(),
+                curve: curves.get(component)?.clone(),
+                context: context(file.model, component, file.curves[&component].visited_strain),
+                strain_per_unit: 1.0,
+                axis: if hinges { "strain [1/m]" } else { "strain" },
+                unit: if hinges { "N" } else { "N/m" },
+            })
+        })
+        .collect();
+    if subjects.is_empty() {
+        let found = wanted.map_or("no observed curve".into(), |wanted| format!("no curve of {wanted}"));
+        return Err(Error::input(path, None, "curves", found, "a component with control points"));
+    }
+    Ok((Source::Material(Box::new(file)), subjects))
+}
+
+/// Writes text to a file that is not the one it was made from.
+///
+/// # Errors
+/// The same file; what the operating system refuses.
+pub fn write(flag: &str, out: &Path, input: &Path, text: &str) -> Result<()> {
+    if let (Ok(out), Ok(same)) = (out.canonicalize(), input.canonicalize())
+        && out == same
+    {
+        let expected = "another file: the input is never changed";
+        return Err(Error::input(input, None, flag, "the input itself", expected));
+    }
+    write_file(out, text.as_bytes())
+}
