@@ -44,6 +44,28 @@ fn every_kind_of_defect_is_repaired() {
 }
 
 #[test]
+fn the_ratio_of_tangents_is_kept_by_no_more_than_it_takes() {
+    // Stress that grows by a tenth within 1e-6 of strain.
+    let given = curve(&[0.0, 0.1, 0.1 + 1e-6], &[1.0, 1.0, 1.1]);
+    assert_eq!(
+        check(&given, &Context::default()).first().map(|finding| finding.kind),
+        Some(Kind::TangentRatio)
+    );
+    let found = repair(&given, &Context::default()).unwrap();
+    let of = extremes(&found.curve);
+    let ratio = of.largest_tangent / of.least_tangent;
+    assert!(ratio > 5e3 && ratio <= TANGENT_RATIO, "{ratio}");
+}
+
+#[test]
+fn the_distance_is_measured_by_simpsons_rule() {
+    let given = curve(&[0.0, 0.1, 0.4], &[1.0, 1.0, 1.0]);
+    let problem = Problem::new(&given);
+    let cubes = problem.strains.iter().zip(&problem.weights).map(|(strain, weight)| weight * strain.powi(3));
+    assert!((cubes.sum::<f64>() - 0.4f64.powi(3) / 4.0).abs() < 1e-16);
+}
+
+#[test]
 fn what_cannot_be_repaired_is_said() {
     let refused = |given: &StiffnessCurve| repair(given, &MEMBRANE).unwrap_err().to_string();
     assert!(refused(&curve(&[0.0, 0.1], &[1e7, 1e7])).contains("at most 1e6"));
