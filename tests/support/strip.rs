@@ -1,6 +1,6 @@
 //! A strip of cloth with its columns of nodes at given places, for beams, chains and hanging strips.
 
-use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::cloth::Cloth;
 use cloth_sim::material::Component;
 use cloth_sim::mesh::Mesh;
 use cloth_sim::samples::Sample;
@@ -64,16 +64,5 @@ pub fn rolled(sample: &Sample, rows: usize) -> Cloth {
     let columns = (0..sample.mesh.len() / rows).map(|column| (column * rows..(column + 1) * rows).collect());
     let free: Vec<Vec<usize>> = columns.filter(|nodes: &Vec<usize>| !nodes.iter().any(held)).collect();
     let components: Vec<Component> = sample.curves.components().collect();
-    Cloth::new(&Problem {
-        mesh: &sample.mesh,
-        model: sample.model,
-        components: &components,
-        areal_density: sample.areal_density,
-        gravity: sample.gravity,
-        held: &sample.held,
-        tied: &free,
-        guided: &[],
-        planar: false,
-    })
-    .expect("columns that are held or free")
+    Cloth::new(&sample.problem(&components, &free)).expect("columns that are held or free")
 }

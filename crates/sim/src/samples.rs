@@ -66,23 +66,31 @@ impl Sample {
         }
     }
 
-    /// The problem, made ready.
+    /// The problem.
+    ///
+    /// * `components` — those that store energy: mostly all that have a curve
+    /// * `tied` — groups of nodes that move alike
+    pub fn problem<'a>(&'a self, components: &'a [Component], tied: &'a [Vec<usize>]) -> Problem<'a> {
+        Problem {
+            mesh: &self.mesh,
+            model: self.model,
+            components,
+            areal_density: self.areal_density,
+            gravity: self.gravity,
+            held: &self.held,
+            tied,
+            guided: &self.guided,
+            planar: self.planar,
+        }
+    }
+
+    /// The problem of all that have a curve, made ready.
     ///
     /// # Errors
     /// As [`Cloth::new`].
     pub fn cloth(&self) -> Result<Cloth> {
         let components: Vec<Component> = self.curves.components().collect();
-        Cloth::new(&Problem {
-            mesh: &self.mesh,
-            model: self.model,
-            components: &components,
-            areal_density: self.areal_density,
-            gravity: self.gravity,
-            held: &self.held,
-            tied: &[],
-            guided: &self.guided,
-            planar: self.planar,
-        })
+        Cloth::new(&self.problem(&components, &[]))
     }
 
     /// Holds every node for which `clip` names one.

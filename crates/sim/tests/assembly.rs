@@ -6,7 +6,7 @@
 //!  ▌▁▁▁▁▁▐   passes  1e-6 relative; forces turn with a rigid motion to 1e-9 (a kilometre away: 1e-6)
 //! ```
 
-use cloth_sim::cloth::{Cloth, ForceScale, Problem};
+use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::element::Curvature;
 use cloth_sim::equilibrium::{Settings, Solver};
@@ -114,18 +114,7 @@ fn parallel(mut sample: Sample, tied: &[Vec<usize>]) -> Sample {
 
 fn tied_cloth(sample: &Sample, tied: &[Vec<usize>]) -> Cloth {
     let components: Vec<Component> = sample.curves.components().collect();
-    Cloth::new(&Problem {
-        mesh: &sample.mesh,
-        model: sample.model,
-        components: &components,
-        areal_density: sample.areal_density,
-        gravity: sample.gravity,
-        held: &sample.held,
-        tied,
-        guided: &[],
-        planar: sample.planar,
-    })
-    .expect("groups that are held or free")
+    Cloth::new(&sample.problem(&components, tied)).expect("groups that are held or free")
 }
 
 /// The columns of the crumpled sheet.

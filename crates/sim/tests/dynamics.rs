@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::cloth::Cloth;
 use cloth_sim::dynamics::{
     Damping, Integrator, LinearSolver, Motion, Newton, Settings, Status, Wind, stable_step,
 };
@@ -36,18 +36,7 @@ fn hung(model: Model, nodes: usize, stiffness: f64) -> Sample {
 /// A cloth that nothing needs to hold.
 fn in_motion(sample: &Sample) -> Cloth {
     let components: Vec<Component> = sample.curves.components().collect();
-    Cloth::in_motion(&Problem {
-        mesh: &sample.mesh,
-        model: sample.model,
-        components: &components,
-        areal_density: sample.areal_density,
-        gravity: sample.gravity,
-        held: &sample.held,
-        tied: &[],
-        guided: &sample.guided,
-        planar: sample.planar,
-    })
-    .unwrap()
+    Cloth::in_motion(&sample.problem(&components, &[])).unwrap()
 }
 
 /// Positions after a time.
