@@ -1,0 +1,106 @@
+//! What a cloth problem consists of, and what makes it none.
+
+use crate::error::{Error, Result};
+use crate::load::{Guided, Held};
+use crate::material::{Component, Model};
+use crate::mesh::Mesh;
+use nalgebra::{Matrix3, Vector3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a cloth problem consists of.
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    /// The sheet at rest.
+    pub mesh: &'a Mesh,
+    /// Which membrane and bending.
+    pub model: Model,
+    /// The components that store energy; the others are left out.
+    pub components: &'a [Component],
+    /// kg/m².
+    pub areal_density: f64,
+    /// m/s²; zero leaves the weight out.
+    pub gravity: Vector3<f64>,
+    /// Nodes at prescribed places.
+    pub held: &'a [Held],
+    /// Groups of nodes that move alike, all by the same displacement: the lines of a sheet that bends as a cylinder. The
+    /// groups are parallel in every state, as they are at rest, so that of elements between the same groups one stands for
+    /// all. A group is free, or held by one clip, as a whole.
+    pub tied: &'a [Vec<usize>],
+    /// Nodes that may move in some directions only; neither held nor tied.
+    pub guided: &'a [Guided],
+    /// All motion is in planes z = const: two unknowns a node.
+    pub planar: bool,
+}
+
+/// What makes a problem none.
+pub(super) fn check(problem: &Problem<'_>) -> Result<()> {
+    let density = problem.areal_density;
+    if !(density >= 0.0 && density.is_finite()) {
+        return Err(Error::InvalidValue {
+            field: "areal_density",
+            value: density,
+            expected: "0 or more, in kg/m²",
+        });
+    }
+    let bends = problem.components.iter().any(|component| component.is_bending());
+    if problem.planar && (bends || !problem.guided.is_empty() || problem.gravity.z != 0.0) {
+        return Err(Error::InvalidValue {
+            field: "planar",
+            value: 1.0,
+            expected: "a problem without bending, without guides and without weight across its plane",
+        });
+    }
+    let mesh = problem.mesh;
+    if let Some(held) = problem.held.iter().find(|held| held.node >= mesh.len()) {
+        return Err(Error::ShapeMismatch { what: "held node", expected: mesh.len(), found: held.node });
+    }
+    let held: BTreeMap<usize, Option<usize>> =
+        problem.held.iter().map(|held| (held.node, held.clip)).collect();
+    let mut seen = BTreeSet::new();
+    let mut unfit = |group: &[usize], node: usize| {
+        node >= mesh.len() || held.get(&node) != held.get(&group[0]) || !seen.insert(node)
+    };
+    let nodes = problem.tied.iter().flat_map(|group| group.iter().map(move |&node| (group, node)));
+    if let Some((_, node)) = nodes.into_iter().find(|&(group, node)| unfit(group, node)) {
+        return Err(Error::InvalidValue {
+            field: "tied",
+            value: node as f64,
+            expected: "nodes of the mesh, each in one group, which is free or held by one clip",
+        });
+    }
+    let tied: BTreeSet<usize> = problem.tied.iter().flatten().copied().collect();
+    let mut seen = BTreeSet::new();
+    let mut unfit = |&&Guided { node, .. }: &&Guided| {
+        node >= mesh.len() || held.contains_key(&node) || tied.contains(&node) || !seen.insert(node)
+    };
+    if let Some(guided) = problem.guided.iter().find(|guided| unfit(guided)) {
+        let expected = "nodes of the mesh, each once, and neither held nor tied";
+        return Err(Error::InvalidValue { field: "guided", value: guided.node as f64, expected });
+    }
+    Ok(())
+}
+
+/// Every part of the cloth is held by a node, or by guides that no translation escapes.
+pub(super) fn check_pinned(problem: &Problem<'_>) -> Result<()> {
+    let mesh = problem.mesh;
+    if problem.held.iter().any(|held| held.node >= mesh.len()) {
+        // What is wrong there is said later.
+        return Ok(());
+    }
+    let parts = mesh.parts();
+    let mut pinned: BTreeSet<usize> = problem.held.iter().map(|held| parts[held.node]).collect();
+    let mut blocked: BTreeMap<usize, Matrix3<f64>> = BTreeMap::new();
+    for guided in problem.guided.iter().filter(|guided| guided.node < mesh.len()) {
+        *blocked.entry(parts[guided.node]).or_default() += Matrix3::identity() - guided.free.projection()?;
+    }
+    let holds = |blocked: &Matrix3<f64>| blocked.symmetric_eigenvalues().min() > 1e-9;
+    pinned.extend(blocked.iter().filter(|(_, blocked)| holds(blocked)).map(|(&part, _)| part));
+    match parts.iter().find(|part| !pinned.contains(part)) {
+        Some(&vertex) => Err(Error::Unpinned {
+            vertex,
+            vertices: parts.iter().filter(|&&part| part == vertex).count(),
+            free: if problem.planar { 3 } else { 6 },
+        }),
+        None => Ok(()),
+    }
+}
