@@ -422,7 +422,7 @@ impl Cloth {
     }
 
     /// The triangles of the rest mesh.
-    pub fn triangles(&self) -> &[[usize; 3]] {
+    pub(crate) fn triangles(&self) -> &[[usize; 3]] {
         &self.triangles
     }
 

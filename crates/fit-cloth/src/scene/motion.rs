@@ -12,9 +12,6 @@ const LINEAR_TOLERANCE: f64 = 1e-5;
 /// Most iterations of one linear system.
 const LINEAR_ITERATIONS: usize = 1000;
 
-/// Of a converged step.
-const TOLERANCE: f64 = 1e-6;
-
 /// The settings that the file describes.
 pub(super) fn settings(
     step: f64,
@@ -58,9 +55,10 @@ fn integrator(solver: &SolverFile, file: &TomlFile) -> Result<Integrator> {
         false => Err(file.invalid(key, value.to_string(), "a share between 0 and 1")),
     };
     let newton = match newton.unwrap_or(NewtonName::Converged) {
-        NewtonName::Converged => {
-            Newton::Converged { tolerance: positive("solver.tolerance", tolerance.unwrap_or(TOLERANCE))? }
-        }
+        NewtonName::Converged => match tolerance {
+            Some(tolerance) => Newton::Converged { tolerance: positive("solver.tolerance", tolerance)? },
+            None => Newton::default(),
+        },
         NewtonName::Single => {
             idle(&[("tolerance", tolerance.is_some())], "newton = \"converged\"")?;
             Newton::Single

