@@ -1,0 +1,45 @@
+//! The stability suite: what can go wrong, case by case, and what must happen then. The list and the last full run stand in
+//! docs/stability.md.
+//!
+//! ```text
+//! cargo test -p fit-cloth --test stability                                            every case, few runs
+//! cargo test -p fit-cloth --test stability --release -- --ignored --nocapture         every case, all runs, the table
+//! ```
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot be set up has failed")]
+
+mod property;
+mod table;
+
+use table::{Extent, HEADER, Row, assert_green};
+
+/// A test a case, and all of them in order.
+macro_rules! cases {
+    ($($name:ident => $rows:path,)*) => {
+        $(#[test]
+        fn $name() {
+            assert_green(&$rows(Extent::Quick));
+        })*
+
+        /// The rows of every case, in order.
+        const CASES: &[(&str, fn(Extent) -> Vec<Row>)] = &[$((stringify!($name), $rows),)*];
+    };
+}
+
+cases! {
+}
+
+#[test]
+#[ignore = "full counts: many minutes"]
+fn full_run() {
+    println!("{HEADER}");
+    let mut all = Vec::new();
+    for (_, case) in CASES {
+        let rows = case(Extent::Full);
+        rows.iter().for_each(|row| println!("{row}"));
+        all.extend(rows);
+    }
+    let runs: u64 = all.iter().map(|row| row.runs).sum();
+    println!("\n{} distinct cases, {runs} runs", all.len());
+    assert_green(&all);
+}

@@ -1,0 +1,46 @@
+//! Properties over random inputs: what fails is made as small as it can be, and reported.
+
+use crate::table::Row;
+use proptest::strategy::Strategy;
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use std::cell::RefCell;
+use std::fmt::Debug;
+
+/// Tries a property on so many inputs, the same in every run; each is a run of the row, whose failure is then the smallest
+/// input that was found to fail.
+///
+/// * `property` — adds one run to the row, by [`Row::holds`] or [`Row::measure`], and returns what that returned
+pub(crate) fn for_all<S: Strategy>(
+    mut row: Row,
+    runs: u32,
+    inputs: S,
+    property: impl Fn(&mut Row, S::Value) -> bool,
+) -> Row
+where
+    S::Value: Debug + Clone,
+{
+    let config = Config { cases: runs, failure_persistence: None, max_shrink_iters: 500, ..Config::default() };
+    // A seed of its own, so that cases with the same inputs do not see the same numbers.
+    let mut seed = [0u8; 32];
+    let name = row.condition.bytes().chain([row.case]);
+    name.enumerate().for_each(|(i, byte)| seed[i % 32] = seed[i % 32].wrapping_mul(31).wrapping_add(byte));
+    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
+    let counted = RefCell::new(row.clone());
+    let outcome = runner.run(&inputs, |input| {
+        // What is tried while a failure is made smaller does not count as runs.
+        let failed = counted.borrow().failure.is_some();
+        let mut scratch = Row { failure: None, ..counted.borrow().clone() };
+        let holds = property(&mut scratch, input.clone());
+        let failure = scratch.failure.take();
+        if !failed {
+            scratch.failure = failure.clone();
+            *counted.borrow_mut() = scratch;
+        }
+        if holds { Ok(()) } else { Err(TestCaseError::fail(failure.unwrap_or_default())) }
+    });
+    row = counted.into_inner();
+    if let Err(error) = outcome {
+        row.failure = Some(format!("{error}"));
+    }
+    row
+}

@@ -1,0 +1,137 @@
+//! The table of the stability suite: what was tried, how often, and how it ended.
+
+use std::fmt;
+
+/// How much is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// In seconds, with every test run.
+    Quick,
+    /// All of it, in minutes.
+    Full,
+}
+
+impl Extent {
+    /// How many of something.
+    pub(crate) fn runs(self, quick: u32, full: u32) -> u32 {
+        match self {
+            Self::Quick => quick,
+            Self::Full => full,
+        }
+    }
+}
+
+/// One distinct case: a number of the list, under one condition, over a range of inputs.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    /// Its number in the list of docs/stability.md.
+    pub(crate) case: u8,
+    /// Under which condition: model, scene, stiffness ratio, …
+    pub(crate) condition: String,
+    /// What is measured: `imbalance`, `relative error`, …; empty where a run either holds or does not.
+    pub(crate) measure: &'static str,
+    /// What the measure must not exceed.
+    pub(crate) limit: f64,
+    /// The worst of all runs; 0 before the first.
+    pub(crate) worst: f64,
+    /// Inputs tried.
+    pub(crate) runs: u64,
+    /// Those that did what they should.
+    pub(crate) survived: u64,
+    /// Equilibria whose tolerance was rounding's.
+    pub(crate) by_rounding: u64,
+    /// Most iterations of a run; 0 where nothing iterates.
+    pub(crate) iterations: usize,
+    /// The first that did not.
+    pub(crate) failure: Option<String>,
+}
+
+impl Row {
+    /// A row whose runs hold or do not.
+    pub(crate) fn new(case: u8, condition: impl Into<String>) -> Self {
+        Self::measured(case, condition, "", 0.0)
+    }
+
+    /// A row whose runs are measured against a limit.
+    pub(crate) fn measured(
+        case: u8,
+        condition: impl Into<String>,
+        measure: &'static str,
+        limit: f64,
+    ) -> Self {
+        Self {
+            case,
+            condition: condition.into(),
+            measure,
+            limit,
+            worst: 0.0,
+            runs: 0,
+            survived: 0,
+            by_rounding: 0,
+            iterations: 0,
+            failure: None,
+        }
+    }
+
+    /// One more run; it survives if it holds.
+    pub(crate) fn holds(&mut self, holds: bool, failure: impl FnOnce() -> String) -> bool {
+        self.runs += 1;
+        self.survived += u64::from(holds);
+        if !holds {
+            self.failure.get_or_insert_with(failure);
+        }
+        holds
+    }
+
+    /// One more run with its measure; it survives if that is within the limit. A NaN is not.
+    pub(crate) fn measure(&mut self, measure: f64, input: impl FnOnce() -> String) -> bool {
+        if !(measure <= self.worst) {
+            self.worst = measure;
+        }
+        let (what, limit) = (self.measure, self.limit);
+        self.holds(measure <= limit, || format!("{what} {measure:.3e} above {limit:.0e}: {}", input()))
+    }
+
+    /// True if every run survived, and there was one.
+    pub(crate) fn is_green(&self) -> bool {
+        self.runs > 0 && self.survived == self.runs
+    }
+}
+
+/// As a row of the table in docs/stability.md.
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |count: u64| if count == 0 { String::new() } else { count.to_string() };
+        let worst = match self.measure {
+            "" => String::new(),
+            measure => format!("{measure} {:.1e} of {:.0e}", self.worst, self.limit),
+        };
+        write!(
+            f,
+            "| {} | {} | {} | {} | {worst} | {} | {} |",
+            self.case,
+            self.condition,
+            self.runs,
+            self.survived,
+            number(self.iterations as u64),
+            number(self.by_rounding),
+        )
+    }
+}
+
+/// The header of the table.
+pub(crate) const HEADER: &str = "\
+| case | condition | runs | survived | worst, of what is allowed | most iterations | decided by rounding |
+|---|---|---|---|---|---|---|";
+
+/// Fails with the first failure of every row that is not green.
+///
+/// # Panics
+/// If a row is not, or there is none.
+pub(crate) fn assert_green(rows: &[Row]) {
+    assert!(!rows.is_empty(), "no row");
+    let red = rows.iter().filter(|row| !row.is_green());
+    let complaints: Vec<String> =
+        red.map(|row| format!("{row}\n  {}", row.failure.as_deref().unwrap_or("never run"))).collect();
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
