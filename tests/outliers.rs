@@ -45,6 +45,9 @@ fn wrong_forces_hardly_move_the_curve() {
         let [ruled, robust] = ROBUST.map(|robust| {
             let settings = Settings { robust, nodes: Some([9, 9]), ..Settings::default() };
             let stage = fit_one(&set, Stage::Stretch, Component::StretchWeft, &settings);
+            let bent = stage.interventions.residuals_bent;
+            // The four, and some of 160 that five control points do not meet to 9 mN.
+            assert!(if robust.is_some() { bent >= 4 } else { bent == 0 }, "{bent} residuals count less");
             stress_error(&stage.curve.samples, &law)
         });
         println!("forces, noise known {known}: {:.2} % without, {:.2} % with", 100.0 * ruled, 100.0 * robust);
@@ -81,10 +84,12 @@ fn vertices_seen_elsewhere_hardly_move_the_curve() {
         let error = |set: &MeasurementSet, robust| {
             let settings = Settings { robust, variant: Variant::Linear, ..Settings::default() };
             let stage = fit_one(set, Stage::Bend, Component::BendWeft, &settings);
-            stress_error(&stage.curve.samples, &moment)
+            (stress_error(&stage.curve.samples, &moment), stage.interventions.vertices_left_out)
         };
-        let undisturbed = error(&clean, None);
-        let [ruled, robust] = ROBUST.map(|robust| error(&set, robust));
+        let (undisturbed, none) = error(&clean, None);
+        let [(ruled, strays), (robust, _)] = ROBUST.map(|robust| error(&set, robust));
+        println!("{none} vertices left out undisturbed, {strays} disturbed");
+        assert!(none == 0 && strays > 0, "{none} {strays}");
         println!(
             "vertices on {measured}²: {:.2} % undisturbed, {:.2} % without, {:.2} % with",
             100.0 * undisturbed,

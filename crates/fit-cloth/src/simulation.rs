@@ -10,10 +10,12 @@ pub use result::{simulation_json, write_simulation};
 
 use crate::scene::{Measure, Scene};
 use cloth_fit::error::Result;
+use cloth_fit::interventions::Interventions;
 use cloth_fit::material::Material;
 use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::descent::{self, Descent, descend};
 use cloth_sim::dynamics::{self, Energies, Motion, Step};
+use cloth_sim::equilibrium::Remedies;
 use cloth_sim::material::Component;
 use nalgebra::Vector3;
 use std::time::{Duration, Instant};
@@ -66,6 +68,8 @@ pub struct Simulation {
     pub rows: Vec<Row>,
     /// How it ended.
     pub end: End,
+    /// What helped its solves along, and how much of the last shape lies beyond its curves.
+    pub interventions: Interventions,
     /// The force that each hold exerts on the sheet at rest, N; nothing of a motion.
     pub holds: Vec<Vector3<f64>>,
     /// How far the sheet hangs down at the end, where the scene asks for it.
@@ -119,6 +123,7 @@ pub fn to_rest(scene: &Scene, material: &Material, watch: &mut dyn FnMut(usize))
             frames,
             rows: Vec::new(),
             end: End::Rest(descent),
+            interventions: interventions(&cloth, material, descent.remedies, &x),
             holds,
             droop: None,
             drape: None,
@@ -150,9 +155,10 @@ pub fn in_motion(
     let every = (1.0 / (scene.frames_per_second * step)).round().max(1.0) as usize;
     let mut frames = vec![Frame { time: Some(0.0), positions: points(&scene.start) }];
     let mut rows = vec![Row { time: 0.0, energies: motion.energies(), step: None }];
-    let (mut not_converged, mut stopped) = (0, None);
+    let (mut not_converged, mut stopped, mut remedies) = (0, None, Remedies::default());
     for number in 1..=steps {
         let step = motion.step();
+        remedies += step.remedies;
         if step.status == dynamics::Status::NotFinite {
             stopped = Some(number);
             break;
@@ -176,12 +182,23 @@ pub fn in_motion(
             frames,
             rows,
             end: End::Motion { steps: taken, not_converged, stopped },
+            interventions: interventions(&cloth, material, remedies, motion.positions()),
             holds: Vec::new(),
             droop: None,
             drape: None,
             elapsed: clock.elapsed(),
         },
     )
+}
+
+/// * `x` — the last shape
+fn interventions(cloth: &Cloth, material: &Material, remedies: Remedies, x: &[f64]) -> Interventions {
+    let share = |component| (component, cloth.extrapolated(&material.curves, component, x));
+    let shares = material.curves.components().map(share);
+    Interventions {
+        share_extrapolated: shares.filter(|(_, share)| *share > 0.0).collect(),
+        ..Interventions::from(remedies)
+    }
 }
 
 /// The same with what the scene measures of its last shape.

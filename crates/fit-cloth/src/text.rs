@@ -20,6 +20,7 @@ pub use summary::{as_published, missing, summary};
 pub use validation::validation;
 pub use verdict::verdict;
 
+use cloth_fit::interventions::Interventions;
 use cloth_fit::report::StageReport;
 use cloth_fit::simulation::Objective;
 use std::fmt::Display;
@@ -34,6 +35,14 @@ fn unit(stage: &StageReport) -> (&'static str, f64) {
     match stage.objective {
         Objective::Forces => ("N", 1.0),
         Objective::Positions => ("mm", 1e3),
+    }
+}
+
+/// What helped solves and fits along, on a line; nothing where nothing did.
+fn interventions(interventions: &Interventions) -> String {
+    match interventions.in_words()[..] {
+        [] => String::new(),
+        ref words => format!("  helped along by: {}\n", list(words)),
     }
 }
 

@@ -11,6 +11,7 @@ use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
+use fit_cloth::text;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -94,6 +95,13 @@ fn the_material_file_gives_every_curve_back_exactly() {
         let read = MaterialFile::read(&path).unwrap();
         assert_eq!(read, file);
         assert_eq!(read.curves().unwrap(), *report.curves());
+        // What helped a stage along is in the file, and in what a person reads.
+        for stage in report.last_stages() {
+            let told = text::stage(stage, false).contains("helped along by: ");
+            assert_eq!(told, !stage.interventions.none(), "{}", text::stage(stage, false));
+            assert_eq!(read.curves[&stage.components[0]].interventions, stage.interventions);
+        }
+        assert!(report.stages.iter().any(|stage| !stage.interventions.share_extrapolated.is_empty()));
     }
 }
 

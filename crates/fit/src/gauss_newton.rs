@@ -143,19 +143,21 @@ pub fn minimise<P: Residuals>(
     options: &Options,
     observe: &mut dyn FnMut(&Iteration),
 ) -> Result<Outcome, P::Error> {
-    let start = match inside(start, domain) {
-        Ok(start) => start,
+    let inside = match inside(start, domain) {
+        Ok(inside) => inside,
         Err(status) => return Ok(Outcome::unevaluated(start.clone(), Status::StepFailed { status })),
     };
-    let state = match values(problem.evaluate(&start, true)?) {
-        Ok((residual, Some(jacobian))) => State::new(start, residual, jacobian),
+    let projected = inside != *start;
+    let state = match values(problem.evaluate(&inside, true)?) {
+        Ok((residual, Some(jacobian))) => State::new(inside, residual, jacobian),
         Ok((_, None)) => panic!("the Jacobian was asked for"),
-        Err(reason) => return Ok(Outcome::unevaluated(start, Status::StartFailed { reason })),
+        Err(reason) => return Ok(Outcome::unevaluated(inside, Status::StartFailed { reason })),
     };
-    match options.globalisation {
+    let outcome = match options.globalisation {
         Globalisation::TrustRegion => within_region(problem, state, domain, options, observe),
         Globalisation::LineSearch => line_search::descend(problem, state, domain, options, observe),
-    }
+    };
+    Ok(Outcome { projected, ..outcome? })
 }
 
 /// Steps within a trust region, until one of the tolerances is met.
@@ -168,6 +170,8 @@ fn within_region<P: Residuals>(
 ) -> Result<Outcome, P::Error> {
     let mut scale = Scale::new(&state.jacobian);
     let mut radius = options.initial_radius * scale.norm_or_one(&state.point);
+    // What is too little to go on for is too little to fail for.
+    let noise = NOISE.max(options.gain_tolerance);
     let mut bend: Option<Bend> = None;
     let mut iterations = Vec::new();
     // Since the last accepted step: how many were rejected, and why the last of them could not be evaluated.
@@ -184,10 +188,15 @@ fn within_region<P: Residuals>(
         let share = scale.norm_or_one(&state.point);
         let length = scale.norm(&step.step);
         let short = length <= options.step_tolerance * share;
+        let solved = step.status == StepStatus::Optimal;
+        // What is not solved proves no minimum.
+        if short && !step.cut && !solved {
+            break Status::StepFailed { status: step.status };
+        }
         if short && !step.cut {
             break Status::SmallStep { tolerance: options.step_tolerance };
         }
-        if (short || rejected >= 3) && failure.is_none() && step.whole_promise <= NOISE {
+        if (short || rejected >= 3) && failure.is_none() && step.whole_promise <= noise && solved {
             break Status::Noise { promised: step.whole_promise };
         }
         if short {
@@ -207,6 +216,7 @@ fn within_region<P: Residuals>(
             step: length / share,
             radius: radius / share,
             accepted,
+            solved,
             rank: step.rank,
             active: step.active,
         };
@@ -235,7 +245,7 @@ fn within_region<P: Residuals>(
         observe(&iteration);
         iterations.push(iteration);
         let little = gain.unwrap_or(f64::INFINITY).max(step.promised) <= options.gain_tolerance;
-        if (accepted && little && !step.cut) || state.residual.norm_squared() == 0.0 {
+        if (accepted && little && solved && !step.cut) || state.residual.norm_squared() == 0.0 {
             break Status::SmallGain { tolerance: options.gain_tolerance };
         }
     };

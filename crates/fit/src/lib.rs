@@ -36,6 +36,7 @@
 //! | [`prediction`], [`compare`] | tests that a fit did not see; models and variants side by side |
 //! | [`measure`], [`validation`] | a frame summed up in one figure; motions and samples that no fit saw |
 //! | [`material`] | what a simulation must know of a fabric, from a fit or from hand
+//! | [`interventions`] | what was clamped, extrapolated, left out or tried again on the way, counted |
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //! | [`error`] | what is wrong with an input, and where |
 //!
@@ -82,6 +83,7 @@ pub mod frame;
 pub mod gap;
 pub mod gauss_newton;
 pub mod incremental;
+pub mod interventions;
 pub mod io;
 pub mod knowledge;
 pub mod least_squares;

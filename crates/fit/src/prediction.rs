@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
+use crate::interventions::Interventions;
 use crate::replica::{Parts, Replica};
 use crate::report::SequenceReport;
 use crate::simulation::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task};
@@ -21,6 +22,8 @@ pub struct Prediction {
     pub dropped: Vec<DroppedFrame>,
     /// What the solves have cost.
     pub counters: Counters,
+    /// What helped them along.
+    pub interventions: Interventions,
 }
 
 /// Simulates all sequences of some kinds with known curves: how well they are predicted.
@@ -57,10 +60,12 @@ pub fn predict(
     let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(&watch.meter));
     simulation.follow();
     let forces = simulation.settle();
+    let counters = watch.meter.read().since(&spent_before);
     Ok(Prediction {
+        interventions: Interventions::new(&counters, &simulation),
         sequences: sequence_reports(&simulation, &forces),
         dropped: simulation.dropped().to_vec(),
-        counters: watch.meter.read().since(&spent_before),
+        counters,
     })
 }
 

@@ -217,7 +217,7 @@ fn fit_level(
         let seconds = clock.elapsed().as_secs_f64();
         (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
     };
-    let mut iterations: Vec<Iteration> = Vec::new();
+    let (mut iterations, mut projected): (Vec<Iteration>, usize) = (Vec::new(), 0);
     let mut fit_from = |simulation: &mut Simulation<'_>, start: &DVector<f64>| {
         let done = iterations.len();
         let mut numbered = |step: &Iteration| {
@@ -226,7 +226,10 @@ fn fit_level(
             iterations.push(step);
         };
         match minimise(simulation, start, &domain, &settings.outer, &mut numbered) {
-            Ok(outcome) => outcome,
+            Ok(outcome) => {
+                projected += usize::from(outcome.projected);
+                outcome
+            }
             Err(never) => match never {},
         }
     };
@@ -249,7 +252,7 @@ fn fit_level(
     }
     let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
     let status = outcome.status.to_string();
-    Ok((outcome, domain, Level { points, rms, status, iterations }))
+    Ok((outcome, domain, Level { points, rms, status, iterations, projected }))
 }
 
 /// One, two, three, five, nine …: every segment is halved, up to the most that is wanted.

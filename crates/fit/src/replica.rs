@@ -69,6 +69,8 @@ pub struct Replica {
     pub frames: Vec<ReplicaFrame>,
     /// How many frames of the sequence were left out because nothing happens there, or nothing was measured.
     pub frames_at_rest: usize,
+    /// Vertices, over all frames, that were seen too far off a table's line to tell its place.
+    pub vertices_left_out: usize,
     /// Two unknowns a node.
     pub planar: bool,
     /// Standard deviation of a force component, N, where known.
@@ -164,6 +166,7 @@ impl Replica {
             fields: Vec::new(),
             frames: Vec::new(),
             frames_at_rest: 0,
+            vertices_left_out: 0,
             planar: false,
             weight: gravity * parts.areal_density,
             lines: None,
@@ -332,7 +335,8 @@ impl Replica {
         for (index, ((frame, overhang), observed)) in
             sequence.frames.iter().zip(overhangs).zip(shapes).enumerate()
         {
-            let Some(Overhang { held, length, start }) = overhang else { continue };
+            let Some(Overhang { held, length, left_out, start }) = overhang else { continue };
+            self.vertices_left_out += left_out;
             let cloth = match cloth_of.get(&held) {
                 Some(&known) => known,
                 None => {

@@ -2,6 +2,7 @@
 
 use crate::frame::{Kind, Phase};
 use crate::gauss_newton::Iteration;
+use crate::interventions::Interventions;
 use crate::simulation::{Counters, DroppedFrame, Objective};
 use crate::stage::Variant;
 use crate::uncertainty::Scatter;
@@ -126,6 +127,8 @@ pub struct Level {
     pub status: String,
     /// Its iterations.
     pub iterations: Vec<Iteration>,
+    /// Starts that broke a constraint of the curve, and were moved to the nearest point that breaks none.
+    pub projected: usize,
 }
 
 impl Level {
@@ -134,6 +137,7 @@ impl Level {
         let done = self.iterations.len();
         let numbered = |step: &Iteration| Iteration { iteration: done + step.iteration, ..step.clone() };
         self.iterations.extend(later.iterations.iter().map(numbered));
+        self.projected += later.projected;
         self.rms = later.rms;
         self.status.clone_from(&later.status);
     }
@@ -186,6 +190,8 @@ pub struct StageReport {
     pub converged: bool,
     /// What was spent.
     pub counters: Counters,
+    /// What helped it along.
+    pub interventions: Interventions,
     /// Wall time, s.
     pub seconds: f64,
 }

@@ -27,6 +27,7 @@ use cloth_sim::equilibrium::{Settings, Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use equilibria::{State, start_state};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 /// A frame that takes no part because its equilibrium was not found.
@@ -254,6 +255,24 @@ impl<'a> Simulation<'a> {
         let [low, high] = self.visited();
         let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
         (if odd { high.max(-low) } else { high }).max(f64::MIN_POSITIVE)
+    }
+
+    /// Vertices that were seen too far off a table's lines, over all frames.
+    pub fn vertices_left_out(&self) -> usize {
+        self.replicas.iter().map(|replica| replica.vertices_left_out).sum()
+    }
+
+    /// Of every component, the share of the sheet over all states that is strained beyond its curve's last control point;
+    /// those of which none is are left out.
+    pub fn extrapolated(&self) -> BTreeMap<Component, f64> {
+        let curves = self.curves(&self.curve);
+        let share = |component| {
+            let (sum, frames) = self.settled().fold((0.0, 0), |(sum, frames), s| {
+                (sum + s.replica.cloth(s.frame).extrapolated(&curves, component, s.x), frames + 1)
+            });
+            (component, sum / f64::from(frames.max(1)))
+        };
+        curves.components().map(share).filter(|(_, share)| *share > 0.0).collect()
     }
 
     fn curves(&self, curve: &StiffnessCurve) -> Curves {

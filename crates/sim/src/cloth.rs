@@ -11,6 +11,7 @@ mod problem;
 pub use problem::Problem;
 
 use crate::bending::Bending;
+use crate::curve::NegativeStrain;
 use crate::element::{
     Curvature, Element, EnergyPass, GradientPass, HessianPass, ParameterPass, Pass, PredictedStrainPass,
     StrainPass, gather,
@@ -285,6 +286,20 @@ impl Cloth {
         let mut pass = StrainPass { x, component, strains: Vec::new() };
         self.visit(&mut pass);
         pass.strains
+    }
+
+    /// Share of the sheet in which a component is strained beyond its curve's last control point, where its stress goes on
+    /// straight; 0 of a constant stiffness, which has no such place.
+    pub fn extrapolated(&self, curves: &Curves, component: Component, x: &[f64]) -> f64 {
+        let Some(curve) = curves.get(component).filter(|curve| curve.len() > 1) else { return 0.0 };
+        let last = curve.strains()[curve.len() - 1];
+        let is_odd = curve.negative() == NegativeStrain::Odd;
+        let (beyond, all) =
+            self.strains(component, x).into_iter().fold((0.0, 0.0), |sums, [strain, area]| {
+                let reaches = if is_odd { strain.abs() } else { strain };
+                (sums.0 + if reaches > last { area } else { 0.0 }, sums.1 + area)
+            });
+        if all > 0.0 { beyond / all } else { 0.0 }
     }
 
     /// The gradient summed over each clip's nodes, N: the force that holds the clip, apart from its own weight.

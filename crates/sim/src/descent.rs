@@ -12,7 +12,7 @@
 
 use crate::cloth::Cloth;
 use crate::dynamics::{self, Integrator, LinearSolver, Motion, Newton};
-use crate::equilibrium::{self, Equilibrium, Solver};
+use crate::equilibrium::{self, Equilibrium, Remedies, Solver};
 use crate::error::{Error, Result};
 use crate::material::Curves;
 
@@ -46,6 +46,8 @@ pub struct Descent {
     pub steps: usize,
     /// How far the node that moves most moved in the solve after the last step, m.
     pub last_way: f64,
+    /// What was done beside plain Newton steps, in all of it; steps that could not be solved count as halved.
+    pub remedies: Remedies,
 }
 
 /// Steps of fewer iterations were easy.
@@ -93,12 +95,15 @@ pub fn descend(
     let mut solver = Solver::new(cloth);
     let (mut length, mut near) = (settings.step, NEAR * cloth.mean_edge());
     let (mut steps, mut strongest) = (0, 0.0f64);
+    let mut remedies = Remedies::default();
     loop {
         let mut going = true;
         while steps < settings.max_steps && going && length > SHORTEST * settings.step {
             let mut motion = Motion::new(cloth, curves, x.to_vec(), &still(length))?;
             let step = motion.step();
             steps += 1;
+            remedies += step.remedies;
+            remedies.halved += usize::from(step.status != dynamics::Status::Done);
             if step.status == dynamics::Status::NotFinite {
                 length *= 0.5;
                 continue;
@@ -120,9 +125,10 @@ pub fn descend(
         }
         let before = x.to_vec();
         let equilibrium = solver.solve(curves, x, &settings.equilibrium);
+        remedies += equilibrium.remedies;
         let last_way = greatest_way(&before, x);
         if equilibrium.converged() || steps >= settings.max_steps || length <= SHORTEST * settings.step {
-            return Ok(Descent { equilibrium, steps, last_way });
+            return Ok(Descent { equilibrium, steps, last_way, remedies });
         }
         // What the solve has made of it is no better start than where the steps ended.
         x.copy_from_slice(&before);

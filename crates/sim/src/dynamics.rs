@@ -20,6 +20,7 @@ mod wind;
 pub use wind::Wind;
 
 use crate::cloth::Cloth;
+use crate::equilibrium::Remedies;
 use crate::error::{Error, Result};
 use crate::material::Curves;
 use implicit_euler::ImplicitEuler;
@@ -159,6 +160,8 @@ pub struct Step {
     pub factorisations: usize,
     /// Largest imbalance of a node in the step's equation, N; 0 of an explicit integrator and of a linearised step.
     pub imbalance: f64,
+    /// What was done beside plain Newton steps.
+    pub remedies: Remedies,
 }
 
 /// The memory of an integrator.

@@ -19,7 +19,10 @@ mod drive;
 mod escape;
 mod levenberg_marquardt;
 mod newton;
+mod remedies;
 mod time_step;
+
+pub use remedies::Remedies;
 
 /// How equilibria are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,6 +126,8 @@ pub struct Equilibrium {
     pub iterations: usize,
     /// Factorisations made, those that check stability included.
     pub factorisations: usize,
+    /// What was done beside plain Newton steps.
+    pub remedies: Remedies,
 }
 
 impl Equilibrium {
@@ -167,6 +172,8 @@ pub struct Solver<'a> {
     careful: bool,
     /// Where a time step starts.
     before: Vec<f64>,
+    /// All that was done beside plain Newton steps, in every solve so far.
+    remedies: Remedies,
 }
 
 impl<'a> Solver<'a> {
@@ -198,6 +205,7 @@ impl<'a> Solver<'a> {
             clamped: 0,
             careful: false,
             before: Vec::new(),
+            remedies: Remedies::default(),
         }
     }
 
@@ -243,20 +251,22 @@ impl<'a> Solver<'a> {
 
     /// A solve whose first matrix uses the strains in `mixed`, if there are any.
     fn settle(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
-        let before = self.linear.factorisations();
+        let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let mut found = self.minimise(curves, x, settings);
         for _ in 0..ESCAPES {
             let unstable = found.status == Status::Unstable;
             if !(settings.escape && unstable && self.leave(curves, x, settings, &mut found)) {
                 break;
             }
+            self.remedies.escapes += 1;
         }
-        Equilibrium { factorisations: self.linear.factorisations() - before, ..found }
+        let (factorisations, remedies) = (self.linear.factorisations() - before, self.remedies - remedies);
+        Equilibrium { factorisations, remedies, ..found }
     }
 
     /// A balanced state downhill, stable or not.
     fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
-        let before = self.linear.factorisations();
+        let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let mut iterations = 0;
         self.damping = 0.0;
         self.clamped = 0;
@@ -268,6 +278,7 @@ impl<'a> Solver<'a> {
             status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);
         }
         if status == Status::Stalled {
+            self.remedies.levenberg_marquardt += usize::from(settings.method == Method::MixedNewton);
             status = self.levenberg_marquardt(curves, x, settings, &mut energy, &mut iterations);
         }
         match settings.method {
@@ -284,8 +295,19 @@ impl<'a> Solver<'a> {
         }
         let (imbalance, tolerance, limit) = self.balance(x, settings);
         let factorisations = self.linear.factorisations() - before;
+        let remedies = self.remedies - remedies;
         let escaped = false;
-        Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
+        Equilibrium {
+            status,
+            escaped,
+            limit,
+            energy,
+            imbalance,
+            tolerance,
+            iterations,
+            factorisations,
+            remedies,
+        }
     }
 
     /// Gradient and factor at a state that the last minimisation did not end in.

@@ -122,6 +122,9 @@ pub fn simulation_json(scene: &Scene, material: &Material, simulation: &Simulati
     if let Some(drape) = &simulation.drape {
         put("drape", json!(drape));
     }
+    if !simulation.interventions.none() {
+        put("interventions", json!(simulation.interventions));
+    }
     put("seconds", json!(simulation.elapsed.as_secs_f64()));
     Value::Object(json)
 }

@@ -134,11 +134,9 @@ fn start(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
 }
 
 fn counted(found: &[Equilibrium]) -> Counters {
-    Counters {
-        equilibria: found.len(),
-        iterations: found.iter().map(|found| found.iterations).sum(),
-        factorisations: found.iter().map(|found| found.factorisations).sum(),
-    }
+    let mut counters = Counters::default();
+    found.iter().for_each(|found| counters.add(found));
+    counters
 }
 
 fn ending(found: &[Equilibrium]) -> Ending {

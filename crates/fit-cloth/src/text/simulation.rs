@@ -1,6 +1,6 @@
 //! What came of a scene.
 
-use super::list;
+use super::{interventions, list};
 use crate::scene::Scene;
 use crate::simulation::{Drape, Droop, End, Simulation};
 use cloth_fit::material::Material;
@@ -36,7 +36,7 @@ pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -
     }
     text += &simulation.droop.as_ref().map(droop).unwrap_or_default();
     text += &simulation.drape.as_ref().map(drape).unwrap_or_default();
-    format!("{text}\n{}\n", verdict(simulation))
+    format!("{text}\n{}{}\n", interventions(&simulation.interventions), verdict(simulation))
 }
 
 fn droop(droop: &Droop) -> String {

@@ -1,6 +1,6 @@
 //! One stage: what it used, how it went, the curve.
 
-use super::{list, seen, unit};
+use super::{interventions, list, seen, unit};
 use cloth_fit::report::StageReport;
 use cloth_fit::simulation::Objective;
 use std::fmt::Write;
@@ -78,10 +78,11 @@ fn iterations(stage: &StageReport) -> String {
 
 fn spent(stage: &StageReport) -> String {
     let counters = &stage.counters;
-    format!(
+    let text = format!(
         "  {} equilibria, {} Newton steps, {} factorisations, {:.2} s; {}\n",
         counters.equilibria, counters.iterations, counters.factorisations, stage.seconds, stage.growth
-    )
+    );
+    text + &interventions(&stage.interventions)
 }
 
 /// The control points with their uncertainty.

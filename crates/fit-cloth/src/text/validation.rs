@@ -1,6 +1,6 @@
 //! How curves meet tests that their fit did not see.
 
-use super::{cell, list, percent};
+use super::{cell, interventions, list, percent};
 use cloth_fit::frame::MeasurementSet;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::validation::{Validated, Validation};
@@ -16,7 +16,8 @@ pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Va
             let _ = writeln!(text, "\nSeveral equilibria in {}: frames {frames}", report.name);
         }
     }
-    format!("{text}\n{}\n", verdict(material, validation))
+    let helped = interventions(&validation.prediction.interventions);
+    format!("{text}\n{helped}{}\n", verdict(material, validation))
 }
 
 fn table(validation: &Validation) -> String {

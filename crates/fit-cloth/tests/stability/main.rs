@@ -26,8 +26,7 @@ macro_rules! cases {
     };
 }
 
-cases! {
-}
+cases! {}
 
 #[test]
 #[ignore = "full counts: many minutes"]

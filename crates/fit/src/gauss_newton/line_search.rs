@@ -56,6 +56,7 @@ pub(super) fn descend<P: Residuals>(
             step: share * length,
             radius: f64::INFINITY,
             accepted: kept.is_some(),
+            solved: step.status == StepStatus::Optimal,
             rank: step.rank,
             active: step.active.clone(),
         };

@@ -23,6 +23,8 @@ pub struct Iteration {
     pub radius: f64,
     /// Whether the step was kept.
     pub accepted: bool,
+    /// Whether the linearised problem that it comes from was solved to the last digit.
+    pub solved: bool,
     /// Rank of the Jacobian it was computed from.
     pub rank: usize,
     /// Rows of A that the step rests on.
@@ -117,18 +119,28 @@ pub struct Outcome {
     pub status: Status,
     /// Every step tried.
     pub iterations: Vec<Iteration>,
+    /// The start broke an inequality, and was moved to the nearest point that breaks none.
+    pub projected: bool,
 }
 
 impl Outcome {
     pub(super) fn at(state: State, status: Status, iterations: Vec<Iteration>) -> Self {
         let sum_of_squares = state.residual.norm_squared();
         let State { point, residual, jacobian, .. } = state;
-        Self { point, residual, jacobian, sum_of_squares, status, iterations }
+        Self { point, residual, jacobian, sum_of_squares, status, iterations, projected: false }
     }
 
     pub(super) fn unevaluated(point: DVector<f64>, status: Status) -> Self {
         let jacobian = DMatrix::zeros(0, point.len());
         let sum_of_squares = f64::NAN;
-        Self { point, residual: DVector::zeros(0), jacobian, sum_of_squares, status, iterations: Vec::new() }
+        Self {
+            point,
+            residual: DVector::zeros(0),
+            jacobian,
+            sum_of_squares,
+            status,
+            iterations: Vec::new(),
+            projected: false,
+        }
     }
 }

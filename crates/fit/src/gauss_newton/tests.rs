@@ -349,3 +349,35 @@ fn jacobians_on_demand_change_nothing_but_the_count() {
     assert_eq!(at_once.evaluations, first.iterations.len() + 1);
     assert!(later.evaluations > at_once.evaluations);
 }
+
+/// A misfit of 100 that is 1e-7 larger wherever it is not evaluated first, beside k − 1.
+struct Rough {
+    first: Option<f64>,
+}
+
+impl Residuals for Rough {
+    type Error = Infallible;
+
+    fn evaluate(&mut self, point: &DVector<f64>, _: bool) -> Result<Evaluation, Infallible> {
+        let first = *self.first.get_or_insert(point[0]);
+        let misfit = if point[0] == first { 100.0 } else { 100.0 * (1.0 + 1e-7) };
+        Ok(Evaluation::Values {
+            residual: vector(&[1.0 - point[0], misfit]),
+            jacobian: Some(matrix(&[[1.0], [0.0]])),
+        })
+    }
+}
+
+/// From 0.97 the linear model promises a share of 9e-8, which every step loses in the roughness.
+#[test]
+fn a_gain_below_the_tolerance_that_roughness_hides_is_no_failure() {
+    let fit = |gain_tolerance| {
+        let options = Options { gain_tolerance, ..Options::default() };
+        let domain = Domain::everywhere(1);
+        let Ok(outcome) =
+            minimise(&mut Rough { first: None }, &vector(&[0.97]), &domain, &options, &mut |_| {});
+        outcome.status
+    };
+    assert!(matches!(fit(1e-6), Status::Noise { promised } if (8e-8..1e-7).contains(&promised)));
+    assert!(matches!(fit(1e-13), Status::Stalled { reason: None }));
+}

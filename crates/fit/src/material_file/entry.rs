@@ -2,6 +2,7 @@
 
 use super::control_point::{ControlPoint, Unit};
 use crate::frame::Kind;
+use crate::interventions::Interventions;
 use crate::report::{Basis, CurveReport, SequenceReport, StageReport};
 use crate::simulation::DroppedFrame;
 use crate::simulation::Objective;
@@ -66,6 +67,9 @@ pub struct CurveEntry {
     /// The fit came to its minimum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub converged: Option<bool>,
+    /// What helped the fit along; absent where nothing did.
+    #[serde(default, skip_serializing_if = "Interventions::none")]
+    pub interventions: Interventions,
 }
 
 /// A pair of control values that the data hardly tell apart.
@@ -106,6 +110,7 @@ impl CurveEntry {
             pass: Some(stage.pass),
             frames: Some(stage.sequences.iter().map(|sequence| sequence.frames).sum()),
             converged: Some(stage.converged),
+            interventions: stage.interventions.clone(),
         }
     }
 

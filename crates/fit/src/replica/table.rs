@@ -71,6 +71,8 @@ pub(super) struct Overhang {
     pub(super) held: usize,
     /// Length of cloth past the edge, m.
     pub(super) length: f64,
+    /// Nodes that were seen too far off their line to tell its place.
+    pub(super) left_out: usize,
     /// Every line straightened or, if the sheet is no cylinder, every node that was seen where it was seen; 3 stacked
     /// coordinates a node, m.
     pub(super) start: Vec<f64>,
@@ -157,7 +159,8 @@ impl Lines {
         }
         let lengths = hanging[1..].windows(2).map(|pair| (pair[1].centre - pair[0].centre).norm());
         let length = lengths.sum::<f64>() + past(hanging[1]);
-        Some(Overhang { held, length, start })
+        let left_out = seen.iter().flatten().map(|line| line.left_out).sum();
+        Some(Overhang { held, length, left_out, start })
     }
 
     /// The nodes of the first lines, all held; the last two lines as clips 0 and 1, since their places and the slope
@@ -206,6 +209,8 @@ struct Line {
     /// Middle of the seen nodes at rest, and the direction of the line there.
     rest: Vector3<f64>,
     along: Vector3<f64>,
+    /// Nodes seen too far off it.
+    left_out: usize,
 }
 
 impl Line {
@@ -214,6 +219,7 @@ impl Line {
             .iter()
             .filter_map(|&node| Some((specimen.mesh.positions[node], point(shape, node)?)))
             .collect();
+        let all = seen.len();
         // Nodes seen far off the line were not seen there.
         let mut line = Self::through_all(&seen)?;
         loop {
@@ -224,7 +230,7 @@ impl Line {
             let limit = f64::max(STRAY * distances[distances.len() / 2], ROUNDING);
             let near: Vec<_> = seen.iter().copied().filter(|node| off(node) <= limit).collect();
             if near.len() == seen.len() {
-                return Some(line);
+                return Some(Self { left_out: all - seen.len(), ..line });
             }
             seen = near;
             line = Self::through_all(&seen)?;
@@ -245,7 +251,7 @@ impl Line {
             product += (place - centre) * s;
             square += s * s;
         }
-        Some(Self { centre, slope: product / square, rest, along })
+        Some(Self { centre, slope: product / square, rest, along, left_out: 0 })
     }
 
     /// Where a node of the line is if the line runs in a direction.

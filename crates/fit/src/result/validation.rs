@@ -3,6 +3,7 @@
 use super::tables::{cell, force_table};
 use crate::error::Result;
 use crate::frame::MeasurementSet;
+use crate::interventions::Interventions;
 use crate::material_file::{MaterialFile, ResidualEntry};
 use crate::stage::Variant;
 use crate::store::write_file;
@@ -29,6 +30,8 @@ struct File<'a> {
     without_equilibrium: Vec<Dropped<'a>>,
     equilibria: usize,
     factorisations: usize,
+    #[serde(skip_serializing_if = "Interventions::none")]
+    interventions: &'a Interventions,
 }
 
 #[derive(Serialize)]
@@ -92,6 +95,7 @@ fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) 
             .collect(),
         equilibria: prediction.counters.equilibria,
         factorisations: prediction.counters.factorisations,
+        interventions: &prediction.interventions,
     };
     // Strings and finite numbers: nothing here can fail to be JSON.
     serde_json::to_string_pretty(&file).map(|text| text + "\n").unwrap_or_default()

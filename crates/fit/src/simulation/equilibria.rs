@@ -87,6 +87,7 @@ impl<'a> Simulation<'a> {
         let mut escaped = found.escaped;
         if !found.converged() && falls_back {
             // A measured shape or a prediction that was too far off: from the replica's own start instead.
+            self.meter.begins_anew();
             x.copy_from_slice(&frame.start);
             found = solver.solve(curves, &mut x, settings);
             self.meter.add(&found);
@@ -94,6 +95,7 @@ impl<'a> Simulation<'a> {
         }
         if !found.converged() && falls_back && !replica.is_on_table() {
             // In load steps, from the flat sheet.
+            self.meter.takes_load_steps();
             x = replica.rest();
             found = solver.drive(curves, &mut x, &frame.start, settings);
             self.meter.add(&found);
@@ -188,6 +190,7 @@ impl<'a> Simulation<'a> {
             let along = solver.drive(curves, &mut x, &replica.frames[frame].start, settings);
             [seen, along].iter().for_each(|found| self.meter.add(found));
             if !along.converged() {
+                self.meter.does_not_follow();
                 x.copy_from_slice(&measured.x);
                 states.push((place, measured));
                 continue;

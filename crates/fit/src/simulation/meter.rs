@@ -1,7 +1,7 @@
-//! What solves cost: counted, so that figures hold on any machine.
+//! What solves cost, and what helped them: counted, so that figures hold on any machine.
 
-use cloth_sim::equilibrium::Equilibrium;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use cloth_sim::equilibrium::{Equilibrium, Limit, Remedies};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What the solves of a stage have cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -12,6 +12,16 @@ pub struct Counters {
     pub iterations: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Equilibria whose imbalance was measured against rounding, not against the tolerance.
+    pub by_rounding: usize,
+    /// What the solver did beside plain Newton steps.
+    pub remedies: Remedies,
+    /// Solves begun anew from a replica's own start.
+    pub begun_anew: usize,
+    /// Solves that then took load steps from the flat sheet.
+    pub in_load_steps: usize,
+    /// Frames that could not be followed from the one before, and started from their measured shape.
+    pub not_followed: usize,
 }
 
 impl Counters {
@@ -21,31 +31,52 @@ impl Counters {
             equilibria: self.equilibria - earlier.equilibria,
             iterations: self.iterations - earlier.iterations,
             factorisations: self.factorisations - earlier.factorisations,
+            by_rounding: self.by_rounding - earlier.by_rounding,
+            remedies: self.remedies - earlier.remedies,
+            begun_anew: self.begun_anew - earlier.begun_anew,
+            in_load_steps: self.in_load_steps - earlier.in_load_steps,
+            not_followed: self.not_followed - earlier.not_followed,
         }
+    }
+
+    /// One more solve.
+    pub fn add(&mut self, equilibrium: &Equilibrium) {
+        self.equilibria += 1;
+        self.iterations += equilibrium.iterations;
+        self.factorisations += equilibrium.factorisations;
+        self.by_rounding += usize::from(equilibrium.converged() && equilibrium.limit == Limit::Rounding);
+        self.remedies += equilibrium.remedies;
     }
 }
 
 /// Counts the cost of a stage while it runs; other threads may read it.
 #[derive(Debug, Default)]
-pub struct Meter {
-    equilibria: AtomicUsize,
-    iterations: AtomicUsize,
-    factorisations: AtomicUsize,
-}
+pub struct Meter(Mutex<Counters>);
 
 impl Meter {
     /// What was spent so far.
     pub fn read(&self) -> Counters {
-        Counters {
-            equilibria: self.equilibria.load(Ordering::Relaxed),
-            iterations: self.iterations.load(Ordering::Relaxed),
-            factorisations: self.factorisations.load(Ordering::Relaxed),
-        }
+        *self.counters()
     }
 
     pub(super) fn add(&self, equilibrium: &Equilibrium) {
-        self.equilibria.fetch_add(1, Ordering::Relaxed);
-        self.iterations.fetch_add(equilibrium.iterations, Ordering::Relaxed);
-        self.factorisations.fetch_add(equilibrium.factorisations, Ordering::Relaxed);
+        self.counters().add(equilibrium);
+    }
+
+    pub(super) fn begins_anew(&self) {
+        self.counters().begun_anew += 1;
+    }
+
+    pub(super) fn takes_load_steps(&self) {
+        self.counters().in_load_steps += 1;
+    }
+
+    pub(super) fn does_not_follow(&self) {
+        self.counters().not_followed += 1;
+    }
+
+    /// Whole in every state, so that a panic elsewhere does not spoil it.
+    fn counters(&self) -> MutexGuard<'_, Counters> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

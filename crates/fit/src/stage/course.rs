@@ -5,6 +5,7 @@ use super::{Settings, Watch};
 use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
 use crate::gauss_newton::Outcome;
+use crate::interventions::Interventions;
 use crate::knowledge::Knowledge;
 use crate::refine::{Growth, grow, refit};
 use crate::replica::{Parts, Replica};
@@ -120,6 +121,9 @@ pub fn fit(
         assumed,
     };
     let (levels, stopped) = (growth.levels.clone(), growth.stopped.clone());
+    let counters = watch.meter.read().since(&spent_before);
+    let interventions =
+        Interventions::new(&counters, &simulation).with_fit(&levels, &simulation, &growth.outcome);
     let converged = growth.outcome.status.converged() && complete;
     Ok(Some(StageReport {
         components: plan.fitted.clone(),
@@ -135,7 +139,8 @@ pub fn fit(
         levels,
         growth: stopped,
         converged,
-        counters: watch.meter.read().since(&spent_before),
+        counters,
+        interventions,
         seconds: clock.elapsed().as_secs_f64(),
     }))
 }

@@ -142,17 +142,19 @@ impl<'a> ImplicitEuler<'a> {
                     linear_iterations: 0,
                     factorisations: found.factorisations,
                     imbalance: found.imbalance,
+                    remedies: found.remedies,
                 }
             }
             Newton::Single => {
                 let before = self.solver.factorisations();
                 let solved = self.solver.linearised_step(curves, &mut state.positions);
                 Step {
-                    status: if solved { Status::Done } else { Status::NotFinite },
+                    status: if solved.is_some() { Status::Done } else { Status::NotFinite },
                     newton_iterations: 1,
                     linear_iterations: 0,
                     factorisations: self.solver.factorisations() - before,
                     imbalance: 0.0,
+                    remedies: solved.unwrap_or_default(),
                 }
             }
         }

@@ -4,6 +4,7 @@ use super::{Damping, Settings, State, Status, Step, Work};
 use crate::cloth::{Cloth, ForceScale};
 use crate::curve::{NegativeStrain, StiffnessCurve};
 use crate::element::Curvature;
+use crate::equilibrium::Remedies;
 use crate::linear::irregular;
 use crate::material::Curves;
 use nalgebra::{Matrix3, Vector3};
@@ -86,6 +87,7 @@ impl RungeKutta {
             linear_iterations: 0,
             factorisations: 0,
             imbalance: 0.0,
+            remedies: Remedies::default(),
         };
         (step, work)
     }

@@ -41,7 +41,7 @@ impl Solver<'_> {
     ) -> Equilibrium {
         assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
         assert!(self.cloth.is_parallel(x), "tied groups are parallel");
-        let before = self.linear.factorisations();
+        let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let clips = motions(self.cloth, x, target);
         let limited = Settings { max_iterations: settings.max_iterations.min(ITERATIONS), ..*settings };
         let (mut done, mut length) = (0.0, 1.0);
@@ -63,13 +63,25 @@ impl Solver<'_> {
             } else {
                 status = if balanced { Status::Stalled } else { status };
                 self.refresh(curves, x);
+                self.remedies.halved += 1;
                 length *= 0.5;
             }
         }
         let energy = self.cloth.energy(curves, x);
         let (imbalance, tolerance, limit) = self.balance(x, settings);
         let factorisations = self.linear.factorisations() - before;
-        Equilibrium { status, escaped, limit, energy, imbalance, tolerance, iterations, factorisations }
+        let remedies = self.remedies - remedies;
+        Equilibrium {
+            status,
+            escaped,
+            limit,
+            energy,
+            imbalance,
+            tolerance,
+            iterations,
+            factorisations,
+            remedies,
+        }
     }
 
     /// Moves the free nodes of a state whose held nodes have moved away from `x`, to first order. The gradient and the

@@ -76,6 +76,7 @@ impl Solver<'_> {
         self.assemble_mixed(curves, x);
         let mean = self.mean_diagonal();
         if let Some(slope) = self.direction_of(self.damping * mean) {
+            self.remedies.damped += usize::from(self.damping > 0.0);
             self.damping = if self.damping > LEAST_DAMPING { 0.1 * self.damping } else { 0.0 };
             return Some(slope);
         }
@@ -83,13 +84,17 @@ impl Solver<'_> {
         if self.damping < DAMPING && self.clamped > CLAMPED_STEPS && !self.careful {
             self.damping = DAMPING;
             if let Some(slope) = self.direction_of(DAMPING * mean) {
+                self.remedies.damped += 1;
                 return Some(slope);
             }
         }
         self.assemble(curves, x, Curvature::Clamped);
+        self.remedies.clamped += 1;
         // A clamped matrix may still be singular, as where nothing but bending holds a flat sheet.
         let shifts = shifts(self.mean_diagonal());
-        std::iter::once(0.0).chain(shifts).find_map(|shift| self.direction_of(shift))
+        let slope = std::iter::once(0.0).chain(shifts).find_map(|shift| self.direction_of(shift));
+        self.remedies.damped += usize::from(self.shift > 0.0);
+        slope
     }
 
     /// Moves along the step, halved until it is acceptable.

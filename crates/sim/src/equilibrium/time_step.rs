@@ -1,6 +1,6 @@
 //! An implicit time step: the equilibrium of the energy and what the step adds to it.
 
-use super::{Equilibrium, Settings, Solver, Status};
+use super::{Equilibrium, Remedies, Settings, Solver, Status};
 use crate::element::Curvature;
 use crate::material::Curves;
 
@@ -40,24 +40,28 @@ impl Solver<'_> {
         self.careful = true;
         let careful = self.minimise(curves, x, settings);
         self.careful = false;
+        let mut remedies = found.remedies;
+        remedies += careful.remedies;
+        remedies.careful += 1;
         Equilibrium {
             iterations: found.iterations + careful.iterations,
             factorisations: found.factorisations + careful.factorisations,
+            remedies,
             ..careful
         }
     }
 
-    /// Solves the step's equation linearised where it starts; false if it has no finite solution.
+    /// Solves the step's equation linearised where it starts; `None` if it has no finite solution.
     ///
     /// Source: Baraff and Witkin 1998, §4.
-    pub(crate) fn linearised_step(&mut self, curves: &Curves, x: &mut [f64]) -> bool {
+    pub(crate) fn linearised_step(&mut self, curves: &Curves, x: &mut [f64]) -> Option<Remedies> {
         self.evaluate(curves, x);
-        let solved = [Curvature::Full, Curvature::Clamped].into_iter().any(|curvature| {
+        let clamped = [Curvature::Full, Curvature::Clamped].into_iter().position(|curvature| {
             self.assemble(curves, x, curvature);
             self.direction_of(0.0).is_some()
-        });
+        })?;
         x.iter_mut().zip(&self.step).for_each(|(x, d)| *x += d);
-        solved && self.step.iter().all(|d| d.is_finite())
+        self.step.iter().all(|d| d.is_finite()).then_some(Remedies { clamped, ..Remedies::default() })
     }
 
     /// Factorisations so far.
