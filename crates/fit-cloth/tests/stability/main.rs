@@ -11,6 +11,8 @@
 
 mod balance;
 mod curves;
+mod derivatives;
+mod elements;
 mod property;
 mod table;
 
@@ -35,6 +37,13 @@ cases! {
     case_03_strain_far_past_the_last_point => curves::case_03,
     case_04_one_point_all_zero_six_decades => curves::case_04,
     case_05_bad_knots => curves::case_05,
+    case_06_strong_compression => elements::case_06,
+    case_07_no_length => elements::case_07,
+    case_08_hinge_angle => elements::case_08,
+    case_09_collapsed_wing => elements::case_09,
+    case_10_slender_cells => elements::case_10,
+    case_11_derivatives => derivatives::case_11,
+    case_12_rigid_motion => elements::case_12,
 }
 
 #[test]
