@@ -13,6 +13,7 @@ mod balance;
 mod curves;
 mod derivatives;
 mod elements;
+mod meshes;
 mod property;
 mod table;
 
@@ -44,6 +45,13 @@ cases! {
     case_10_slender_cells => elements::case_10,
     case_11_derivatives => derivatives::case_11,
     case_12_rigid_motion => elements::case_12,
+    case_13_bad_vertices => meshes::case_13,
+    case_14_no_area => meshes::case_14,
+    case_15_three_faces_at_an_edge => meshes::case_15,
+    case_16_mixed_winding => meshes::case_16,
+    case_17_bad_material_coordinates => meshes::case_17,
+    case_18_millimetres => meshes::case_18,
+    case_19_parts_that_nothing_holds => meshes::case_19,
 }
 
 #[test]
