@@ -52,7 +52,7 @@ pub(crate) fn judge(
 
 /// Largest force on a free node over what it may be: a millionth of the typical force or weight at a node, or a hundred times
 /// what rounding the coordinates makes of it.
-fn imbalance(cloth: &Cloth, sample: &Sample, x: &[f64]) -> f64 {
+pub(crate) fn imbalance(cloth: &Cloth, sample: &Sample, x: &[f64]) -> f64 {
     let (forces, scale) = forces(cloth, &sample.curves, x);
     let free: Vec<usize> = (0..cloth.nodes()).filter(|&node| is_free(sample, node)).collect();
     let weight = |node: usize| cloth.masses()[node] * sample.gravity.norm();

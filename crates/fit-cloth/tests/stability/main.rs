@@ -10,11 +10,18 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot be set up has failed")]
 
 mod balance;
+#[allow(dead_code, reason = "other figures need the rest")]
+#[path = "../../src/plot/chart.rs"]
+mod chart;
+mod convergence;
 mod curves;
 mod derivatives;
 mod elements;
+mod equilibria;
 mod meshes;
+mod motion;
 mod property;
+mod stiff;
 mod table;
 
 use table::{Extent, HEADER, Row, assert_green};
@@ -52,6 +59,18 @@ cases! {
     case_17_bad_material_coordinates => meshes::case_17,
     case_18_millimetres => meshes::case_18,
     case_19_parts_that_nothing_holds => meshes::case_19,
+    case_20_nothing_held => equilibria::case_20,
+    case_21_flat_in_compression => equilibria::case_21,
+    case_22_stiff_against_soft => stiff::case_22,
+    case_23_springs_at_flat => equilibria::case_23,
+    case_24_clips_that_jump => equilibria::case_24,
+    case_25_strong_gravity => stiff::case_25,
+    case_26_no_load => equilibria::case_26,
+    case_27_iteration_cap => equilibria::case_27,
+    case_28_runge_kutta_beyond_its_limit => motion::case_28,
+    case_29_energy_of_implicit_euler => motion::case_29,
+    case_30_not_finite_in_mid_run => motion::case_30,
+    case_31_at_rest_for_long => motion::case_31,
 }
 
 #[test]
@@ -68,4 +87,10 @@ fn full_run() {
     let runs: u64 = all.iter().map(|row| row.runs).sum();
     println!("\n{} distinct cases, {runs} runs", all.len());
     assert_green(&all);
+}
+
+#[test]
+#[ignore = "some minutes, and it writes the figures of docs/stability"]
+fn convergence_over_the_stiffness_ratio() {
+    println!("{}", convergence::report());
 }
