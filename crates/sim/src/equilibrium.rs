@@ -3,8 +3,8 @@
 //! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
 //! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
 //! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
-//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. A balance that is not
-//! stable is left for the lower of the two states beside it.
+//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. Where the iterations run out,
+//! a softer membrane shows the way. A balance that is not stable is left for the lower of the two states beside it.
 //!
 //! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
 
@@ -20,6 +20,7 @@ mod escape;
 mod levenberg_marquardt;
 mod newton;
 mod remedies;
+mod stiffen;
 mod time_step;
 
 pub use remedies::Remedies;
@@ -31,7 +32,8 @@ pub struct Settings {
     pub method: Method,
     /// When a state counts as balanced.
     pub tolerance: Tolerance,
-    /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them.
+    /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them, and where they run
+    /// out, starting anew with a softer membrane that is stiffened step by step is four or more.
     pub max_iterations: usize,
     /// Leave an unstable state for one of lower energy; default true.
     pub escape: bool,
@@ -222,7 +224,19 @@ impl<'a> Solver<'a> {
         assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
         assert!(self.cloth.is_parallel(x), "tied groups are parallel");
         self.mixed.clear();
-        self.settle(curves, x, settings)
+        let start = x.to_vec();
+        let (before, remedies) = (self.linear.factorisations(), self.remedies);
+        let mut found = self.settle(curves, x, settings);
+        // Fewer iterations than that were asked for to see how far they lead.
+        if found.status == Status::IterationLimit
+            && settings.method == Method::MixedNewton
+            && settings.max_iterations > newton::NONMONOTONE_STEPS
+        {
+            self.remedies.softened += 1;
+            self.stiffen(curves, x, &start, settings, &mut found);
+        }
+        let (factorisations, remedies) = (self.linear.factorisations() - before, self.remedies - remedies);
+        Equilibrium { factorisations, remedies, ..found }
     }
 
     /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
@@ -271,8 +285,8 @@ impl<'a> Solver<'a> {
         self.damping = 0.0;
         self.clamped = 0;
         let mut energy = self.evaluate(curves, x);
-        // An angle at a collapsed wing has a finite energy and forces that are not.
-        let finite = energy.is_finite() && self.cloth.norm(&self.gradient).is_finite();
+        // An angle at a collapsed wing has a finite energy and forces that are not, on held nodes only if all are held.
+        let finite = energy.is_finite() && self.gradient.iter().all(|force| force.is_finite());
         let mut status = if finite { Status::Stalled } else { Status::NotFinite };
         if status == Status::Stalled && settings.method == Method::MixedNewton {
             status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);

@@ -90,16 +90,12 @@ pub enum Error {
         /// What needs it.
         what: &'static str,
     },
-    /// A part of the cloth that nothing holds.
-    #[error(
-        "nothing holds the part of the cloth that contains vertex {vertex} ({vertices} vertices): {free} rigid motions free"
-    )]
+    /// Parts of the cloth that nothing holds.
+    #[error("nothing holds the part of the cloth that contains {}: {free} rigid motions free", listed(parts))]
     Unpinned {
-        /// Lowest vertex of the part.
-        vertex: usize,
-        /// How many vertices the part has.
-        vertices: usize,
-        /// How many rigid motions remain.
+        /// Each of them, by its lowest vertex.
+        parts: Vec<Part>,
+        /// How many rigid motions remain to each.
         free: usize,
     },
     /// A value outside what it may be.
@@ -140,6 +136,20 @@ pub enum Error {
         /// Why not.
         reason: &'static str,
     },
+}
+
+/// A connected part of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Its lowest vertex.
+    pub vertex: usize,
+    /// How many vertices it has.
+    pub vertices: usize,
+}
+
+fn listed(parts: &[Part]) -> String {
+    let part = |Part { vertex, vertices }: &Part| format!("vertex {vertex} ({vertices} vertices)");
+    parts.iter().map(part).collect::<Vec<_>>().join(", nor that of ")
 }
 
 /// Result with the crate's [`Error`](enum@Error).

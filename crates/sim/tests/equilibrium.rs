@@ -8,7 +8,7 @@
 use cloth_sim::cloth::Cloth;
 use cloth_sim::element::Curvature;
 use cloth_sim::equilibrium::{Equilibrium, Method, Settings, Solver, Status, Tolerance};
-use cloth_sim::error::Error;
+use cloth_sim::error::{Error, Part};
 use cloth_sim::material::{Component, Curves, Model};
 use cloth_sim::membrane::Membrane;
 use cloth_sim::mesh::{Diagonals, Mesh};
@@ -282,7 +282,7 @@ fn what_nothing_holds_is_named() {
     let mut sample = samples::cantilever(Model::Stvk, 4, 500.0).unwrap();
     sample.held.clear();
     let error = sample.cloth().unwrap_err();
-    assert_eq!(error, Error::Unpinned { vertex: 0, vertices: 16, free: 6 });
+    assert_eq!(error, Error::Unpinned { parts: vec![Part { vertex: 0, vertices: 16 }], free: 6 });
     assert!(error.to_string().contains("6 rigid motions free"), "{error}");
 
     let one = samples::square(4, Diagonals::Forward).unwrap();
@@ -293,8 +293,15 @@ fn what_nothing_holds_is_named() {
     let mesh = Mesh::new(positions, material, triangles.collect()).unwrap();
     let mut sample =
         Sample::at_rest(mesh, Model::Stvk, samples::fabric(Model::Stvk, [500.0, 50.0, 1e-5]).unwrap());
+    let parts = [0, 16].map(|vertex| Part { vertex, vertices: 16 }).to_vec();
+    let error = sample.cloth().unwrap_err();
+    assert_eq!(error, Error::Unpinned { parts: parts.clone(), free: 6 });
+    assert!(
+        error.to_string().contains("vertex 0 (16 vertices), nor that of vertex 16 (16 vertices)"),
+        "{error}"
+    );
     sample.hold(|p| (p.x < 0.5 * SIDE).then_some(0));
-    assert_eq!(sample.cloth().unwrap_err(), Error::Unpinned { vertex: 16, vertices: 16, free: 6 });
+    assert_eq!(sample.cloth().unwrap_err(), Error::Unpinned { parts: parts[1..].to_vec(), free: 6 });
 }
 
 #[test]

@@ -4,11 +4,24 @@
 //! ```text
 //! cargo test -p fit-cloth --test stability                                            every case, few runs
 //! cargo test -p fit-cloth --test stability --release -- --ignored --nocapture         every case, all runs, the table
+//! CASE=case_22 cargo test …                                                           one of them
 //! ```
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot be set up has failed")]
 
+mod balance;
+#[allow(dead_code, reason = "other figures need the rest")]
+#[path = "../../src/plot/chart.rs"]
+mod chart;
+mod convergence;
+mod curves;
+mod derivatives;
+mod elements;
+mod equilibria;
+mod meshes;
+mod motion;
 mod property;
+mod stiff;
 mod table;
 
 use table::{Extent, HEADER, Row, assert_green};
@@ -26,14 +39,47 @@ macro_rules! cases {
     };
 }
 
-cases! {}
+cases! {
+    case_01_negative_stiffness_between_points => curves::case_01,
+    case_02_falling_tangent => curves::case_02,
+    case_03_strain_far_past_the_last_point => curves::case_03,
+    case_04_one_point_all_zero_six_decades => curves::case_04,
+    case_05_bad_knots => curves::case_05,
+    case_06_strong_compression => elements::case_06,
+    case_07_no_length => elements::case_07,
+    case_08_hinge_angle => elements::case_08,
+    case_09_collapsed_wing => elements::case_09,
+    case_10_slender_cells => elements::case_10,
+    case_11_derivatives => derivatives::case_11,
+    case_12_rigid_motion => elements::case_12,
+    case_13_bad_vertices => meshes::case_13,
+    case_14_no_area => meshes::case_14,
+    case_15_three_faces_at_an_edge => meshes::case_15,
+    case_16_mixed_winding => meshes::case_16,
+    case_17_bad_material_coordinates => meshes::case_17,
+    case_18_millimetres => meshes::case_18,
+    case_19_parts_that_nothing_holds => meshes::case_19,
+    case_20_nothing_held => equilibria::case_20,
+    case_21_flat_in_compression => equilibria::case_21,
+    case_22_stiff_against_soft => stiff::case_22,
+    case_23_springs_at_flat => equilibria::case_23,
+    case_24_clips_that_jump => equilibria::case_24,
+    case_25_strong_gravity => stiff::case_25,
+    case_26_no_load => equilibria::case_26,
+    case_27_iteration_cap => equilibria::case_27,
+    case_28_runge_kutta_beyond_its_limit => motion::case_28,
+    case_29_energy_of_implicit_euler => motion::case_29,
+    case_30_not_finite_in_mid_run => motion::case_30,
+    case_31_at_rest_for_long => motion::case_31,
+}
 
 #[test]
 #[ignore = "full counts: many minutes"]
 fn full_run() {
     println!("{HEADER}");
     let mut all = Vec::new();
-    for (_, case) in CASES {
+    let wanted = std::env::var("CASE").unwrap_or_default();
+    for (_, case) in CASES.iter().filter(|(name, _)| name.contains(&wanted)) {
         let rows = case(Extent::Full);
         rows.iter().for_each(|row| println!("{row}"));
         all.extend(rows);
@@ -41,4 +87,10 @@ fn full_run() {
     let runs: u64 = all.iter().map(|row| row.runs).sum();
     println!("\n{} distinct cases, {runs} runs", all.len());
     assert_green(&all);
+}
+
+#[test]
+#[ignore = "some minutes, and it writes the figures of docs/stability"]
+fn convergence_over_the_stiffness_ratio() {
+    println!("{}", convergence::report());
 }

@@ -2,7 +2,7 @@
 
 use crate::table::Row;
 use proptest::strategy::Strategy;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 use std::cell::RefCell;
 use std::fmt::Debug;
 
@@ -40,8 +40,12 @@ where
         if holds { Ok(()) } else { Err(TestCaseError::fail(failure.unwrap_or_default())) }
     });
     row = counted.into_inner();
-    if let Err(error) = outcome {
-        row.failure = Some(format!("{error}"));
+    match outcome {
+        Err(TestError::Fail(reason, smallest)) => {
+            row.failure = Some(format!("{reason}\n  from {smallest:?}"))
+        }
+        Err(TestError::Abort(reason)) => row.failure = Some(format!("given up: {reason}")),
+        Ok(()) => (),
     }
     row
 }

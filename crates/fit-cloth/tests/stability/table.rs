@@ -104,6 +104,8 @@ impl fmt::Display for Row {
         let number = |count: u64| if count == 0 { String::new() } else { count.to_string() };
         let worst = match self.measure {
             "" => String::new(),
+            // A share of a tolerance; what is within it must not be rounded to it.
+            measure if self.limit == 1.0 => format!("{measure} {:.3} of 1", self.worst),
             measure => format!("{measure} {:.1e} of {:.0e}", self.worst, self.limit),
         };
         write!(

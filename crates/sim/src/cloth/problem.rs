@@ -1,6 +1,6 @@
 //! What a cloth problem consists of, and what makes it none.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Part, Result};
 use crate::load::{Guided, Held};
 use crate::material::{Component, Model};
 use crate::mesh::Mesh;
@@ -95,12 +95,11 @@ pub(super) fn check_pinned(problem: &Problem<'_>) -> Result<()> {
     }
     let holds = |blocked: &Matrix3<f64>| blocked.symmetric_eigenvalues().min() > 1e-9;
     pinned.extend(blocked.iter().filter(|(_, blocked)| holds(blocked)).map(|(&part, _)| part));
-    match parts.iter().find(|part| !pinned.contains(part)) {
-        Some(&vertex) => Err(Error::Unpinned {
-            vertex,
-            vertices: parts.iter().filter(|&&part| part == vertex).count(),
-            free: if problem.planar { 3 } else { 6 },
-        }),
-        None => Ok(()),
+    let mut sizes: BTreeMap<usize, usize> = BTreeMap::new();
+    parts.iter().filter(|part| !pinned.contains(part)).for_each(|&part| *sizes.entry(part).or_default() += 1);
+    if sizes.is_empty() {
+        return Ok(());
     }
+    let parts = sizes.into_iter().map(|(vertex, vertices)| Part { vertex, vertices }).collect();
+    Err(Error::Unpinned { parts, free: if problem.planar { 3 } else { 6 } })
 }

@@ -13,7 +13,7 @@ use crate::material::Curves;
 const NONMONOTONE: f64 = 1e3;
 
 /// After so many steps the energy must fall in each: no cycling.
-const NONMONOTONE_STEPS: usize = 40;
+pub(super) const NONMONOTONE_STEPS: usize = 40;
 
 /// A factor is used again while each step with it leaves less than this share of the imbalance. Warm cantilevers need 3.0
 /// factorisations with 0.5, 3.7 with 0.25; picture frames 5.0 and 6.0.
@@ -40,8 +40,14 @@ impl Solver<'_> {
         iterations: &mut usize,
     ) -> Status {
         // A time step is predicted so well that forces too small to count would never be answered, and add up.
+        let (mut lowest, mut best) = (*energy, x.to_vec());
         while (self.increment.is_some() && *iterations == 0) || !self.is_balanced(x, settings) {
             if *iterations >= settings.max_iterations {
+                // The energy may have risen on the way.
+                if lowest < *energy {
+                    x.copy_from_slice(&best);
+                    *energy = self.evaluate(curves, x);
+                }
                 return Status::IterationLimit;
             }
             let Some(slope) = self.newton_direction(curves, x) else { return Status::Stalled };
@@ -51,6 +57,10 @@ impl Solver<'_> {
                 return Status::Stalled;
             }
             self.chord_steps(curves, x, settings, energy);
+            if *energy < lowest {
+                lowest = *energy;
+                best.copy_from_slice(x);
+            }
         }
         Status::Converged
     }

@@ -1,0 +1,359 @@
+//! Cases 6 to 12: single elements and small sheets, compressed, collapsed, folded, flattened, turned.
+
+use crate::balance::{self, larger};
+use crate::property::for_all;
+use crate::table::{Extent, Row};
+use cloth_sim::bending::Hinge;
+use cloth_sim::element::Element;
+use cloth_sim::equilibrium::{Limit, Settings, Solver, Status, Tolerance};
+use cloth_sim::error::Error;
+use cloth_sim::material::{Component, Model};
+use cloth_sim::mesh::{Diagonals, Grid};
+use cloth_sim::samples::{self, SIDE, Sample};
+use nalgebra::{Matrix3x2, Rotation3, Vector3};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+const MEMBRANE: [Component; 3] = [Component::StretchWeft, Component::StretchWarp, Component::Shear];
+
+/// Compression along weft, all around, in the plane: converges, and no triangle turns over. Shear and warp are stiff enough
+/// that the yarns do not buckle.
+pub(crate) fn case_06(extent: Extent) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for model in Model::ALL {
+        for share in [0.7, 0.4, 0.2, 0.1] {
+            // Of a compressed cell the perturbation is up to 0.6 %, on the way from rest a tenth.
+            for (way, size) in [("solved there", 1e-5), ("driven there from rest", 2e-3)] {
+                let row = balance::row(6, format!("{model}, compressed to λ = {share}, {way}"));
+                let inputs = (-3.0..9.0, 1e-3..1.0);
+                rows.push(for_all(
+                    row,
+                    extent.runs(3, 300),
+                    inputs,
+                    |row, (decade, perturbed): (f64, f64)| {
+                        compressed(row, model, share, 10f64.powf(decade), (perturbed * size, size > 1e-4))
+                    },
+                ));
+            }
+        }
+    }
+    rows
+}
+
+fn compressed(
+    row: &mut Row,
+    model: Model,
+    share: f64,
+    stiffness: f64,
+    (perturbation, driven): (f64, bool),
+) -> bool {
+    let patch = |share| samples::patch(model, Matrix3x2::new(share, 0.0, 0.0, 1.0, 0.0, 0.0)).unwrap();
+    let stiffnesses = [stiffness, 1e3 * stiffness, 100.0 * stiffness];
+    // Diagonal springs would buckle themselves.
+    let count = if model == Model::Springs { 2 } else { 3 };
+    let curves: Vec<_> = MEMBRANE.into_iter().zip(stiffnesses).take(count).collect();
+    let mut sample = patch(if driven { 1.0 } else { share });
+    sample.curves = samples::linear_curves(model, &curves).unwrap();
+    sample.planar = true;
+    sample.perturb(perturbation);
+    let cloth = sample.cloth().unwrap();
+    let mut solver = Solver::new(&cloth);
+    let mut x = sample.start.clone();
+    let mut found = solver.solve(&sample.curves, &mut x, &Settings::default());
+    if driven {
+        found = solver.drive(&sample.curves, &mut x, &patch(share).start, &Settings::default());
+    }
+    let inverted = sample.mesh.triangles.iter().find(|triangle| {
+        let [a, b, c] = triangle.map(|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3]));
+        !((b - a).cross(&(c - a)).z > 0.0)
+    });
+    let also = inverted.map_or(Ok(()), |triangle| Err(format!("{triangle:?} is inverted")));
+    let input = format!("k = {stiffness:.3e} N/m, perturbed by {perturbation:.1e} m");
+    balance::judge(row, &cloth, &sample, &x, &found, also, &input)
+}
+
+/// A sheet of which a row or column of cells has no length: energy, forces and stiffness are finite, and so is what a solve
+/// makes of it.
+pub(crate) fn case_07(extent: Extent) -> Vec<Row> {
+    let states = Model::ALL.into_iter().flat_map(|model| [true, false].map(|planar| (model, planar)));
+    states
+        .map(|(model, planar)| {
+            let space = if planar { "in the plane" } else { "in space" };
+            let row = Row::new(7, format!("{model}, no length along weft, warp or both, {space}"));
+            let inputs = (1..4usize, -3.0..9.0, prop::bool::weighted(0.5), -320.0..-3.0);
+            for_all(
+                row,
+                extent.runs(60, 2_000),
+                inputs,
+                |row, (which, decade, exactly, small): (usize, f64, bool, f64)| {
+                    let length = if exactly { 0.0 } else { 10f64.powf(small) };
+                    without_length(row, model, planar, which, (10f64.powf(decade), length))
+                },
+            )
+        })
+        .collect()
+}
+
+/// * `which` — bit 0 for weft, bit 1 for warp
+/// * `length` — of what is collapsed, as a share of its rest length
+fn without_length(
+    row: &mut Row,
+    model: Model,
+    planar: bool,
+    which: usize,
+    (stiffness, length): (f64, f64),
+) -> bool {
+    let curves: Vec<_> = MEMBRANE.map(|component| (component, stiffness)).into();
+    let mesh = samples::square(5, Diagonals::Alternating).unwrap();
+    let mut sample = Sample::at_rest(mesh, model, samples::linear_curves(model, &curves).unwrap());
+    sample.planar = planar;
+    sample.hold(|p| (p.x == 0.0).then_some(0));
+    let squeeze = |c: f64, bit: usize| if which & bit == 0 { c } else { 0.3 * SIDE + length * c };
+    sample.place(|p| Vector3::new(squeeze(p.x, 1), squeeze(p.y, 2), p.z));
+    let cloth = sample.cloth().unwrap();
+    let mut values = Vec::new();
+    cloth.hessian(&sample.curves, &sample.start, cloth_sim::element::Curvature::Full, &mut values);
+    let energy = cloth.energy(&sample.curves, &sample.start);
+    let (forces, _) = balance::forces(&cloth, &sample.curves, &sample.start);
+    let finite = energy.is_finite()
+        && values.iter().all(|value| value.is_finite())
+        && forces.iter().all(|force| force.iter().all(|f| f.is_finite()));
+    let mut x = sample.start.clone();
+    let few = Settings { max_iterations: 10, ..Settings::default() };
+    let found = Solver::new(&cloth).solve(&sample.curves, &mut x, &few);
+    let stays_finite = x.iter().all(|x| x.is_finite()) && found.imbalance.is_finite();
+    row.holds(finite && stays_finite, || {
+        format!("{which}, k = {stiffness:e}, {length:e}: {energy} J, {found:?}")
+    })
+}
+
+/// The hinge's angle is exact at zero, near ±π and between, whatever the size.
+pub(crate) fn case_08(extent: Extent) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for size in [1e-3, 1e-2, 1e-1, 1.0, 10.0] {
+        for (range, small) in [("near 0", true), ("near ±π", true), ("any", false)] {
+            let condition = format!("{range}, edge about {size} m");
+            let row = Row::measured(8, condition, "error, rad", 1e-14);
+            let angle =
+                if small { (-300.0..-2.0).prop_map(|p| 10f64.powf(p)).boxed() } else { (0.0..PI).boxed() };
+            let sides = (0.3..3.0, -1.0..2.0, 0.1..3.0, -1.0..2.0, 0.1..3.0);
+            let inputs = (angle, prop::bool::ANY, sides);
+            rows.push(for_all(row, extent.runs(500, 20_000), inputs, |row, (angle, up, sides)| {
+                let found = folded(angle, range == "near ±π", up, size, sides);
+                let expected = if range == "near ±π" { PI - angle } else { angle };
+                // Folded flat, up and down are one.
+                let error = (found.abs() - expected).abs();
+                row.measure(error, || format!("{angle:e} rad, up: {up}, {sides:?}: {found:e}"))
+            }));
+        }
+    }
+    rows
+}
+
+/// The angle of a hinge whose second wing is turned by a small angle from flat, or from folded flat.
+fn folded(
+    angle: f64,
+    over: bool,
+    up: bool,
+    size: f64,
+    (edge, foot, height, other, second): (f64, f64, f64, f64, f64),
+) -> f64 {
+    let hinge = Hinge {
+        nodes: [0, 1, 2, 3],
+        rest_angle: 0.0,
+        rest_length: size * edge,
+        width: 1.0,
+        component: Component::BendWeft,
+    };
+    let (sin, cos) = angle.sin_cos();
+    let [sin, cos] = [if up { sin } else { -sin }, if over { -cos } else { cos }];
+    let x = [[0.0, 0.0, 0.0], [edge, 0.0, 0.0], [foot, height, 0.0], [other, -second * cos, second * sin]];
+    hinge.strains(&x.map(|p| Vector3::from(p) * size))[0]
+}
+
+/// A wing without height is an error that names the edge, and in a state it is a status.
+pub(crate) fn case_09(extent: Extent) -> Vec<Row> {
+    let splits = [Diagonals::Forward, Diagonals::Backward, Diagonals::Alternating, Diagonals::Crossed];
+    let mut rows = Vec::new();
+    for diagonals in splits {
+        let inputs = (2..6usize, 2..6usize, -3.0..1.0, 0..1000usize, 0.0..1.0, -13.0..-10.5);
+        let row = Row::new(9, format!("{diagonals:?}: the rest shape's edge is named"));
+        rows.push(for_all(
+            row,
+            extent.runs(100, 5_000),
+            inputs,
+            |row, (columns, rows, size, at, foot, height): (_, _, f64, _, _, f64)| {
+                let size = 10f64.powf(size);
+                collapsed(
+                    row,
+                    Grid { columns, rows, width: size, height: size, diagonals },
+                    at,
+                    [foot, 10f64.powf(height)],
+                )
+            },
+        ));
+    }
+    for model in [Model::Stvk, Model::SoftConstraint] {
+        let row = Row::new(9, format!("{model}: a collapsed state is a status"));
+        rows.push(for_all(
+            row,
+            extent.runs(20, 1_000),
+            (0..1000usize, -3.0..9.0),
+            |row, (at, decade): (usize, f64)| {
+                let stretch = 10f64.powf(decade);
+                let mut sample = samples::cantilever(model, 5, stretch).unwrap();
+                // The corner of a triangle on the other: every hinge between has a wing without height.
+                let triangle = sample.mesh.triangles[at % sample.mesh.triangles.len()];
+                let place = |node: usize| 3 * node..3 * node + 3;
+                sample.start.copy_within(place(triangle[0]), 3 * triangle[2]);
+                let before = sample.start.clone();
+                let cloth = sample.cloth().unwrap();
+                let found =
+                    Solver::new(&cloth).solve(&sample.curves, &mut sample.start, &Settings::default());
+                let named = found.status == Status::NotFinite;
+                row.holds(named && sample.start == before, || format!("{at}, {stretch:e}: {found:?}"))
+            },
+        ));
+    }
+    rows
+}
+
+/// Puts the corner of a triangle nearly onto the edge opposite, which is an inner one.
+fn collapsed(row: &mut Row, grid: Grid, at: usize, [foot, height]: [f64; 2]) -> bool {
+    let mut mesh = grid.mesh().unwrap();
+    let edges = mesh.edges().unwrap();
+    let inner: Vec<_> = edges.iter().filter(|edge| edge.right.is_some()).collect();
+    let edge = inner[at % inner.len()];
+    let [from, to] = edge.ends.map(|node| mesh.positions[node]);
+    let across = Vector3::new(from.y - to.y, to.x - from.x, 0.0);
+    mesh.positions[edge.left] = from + (to - from) * foot + across * height;
+    let error = Hinge::all(&mesh).err();
+    let named = match &error {
+        Some(Error::CollapsedWing { edge: [a, b], wing }) => {
+            // Its triangle may have another inner edge, which is named as well.
+            let [p, q, r] = [*a, *b, *wing].map(|node| mesh.positions[node]);
+            let flat = (q - p).cross(&(r - p)).norm() <= 1e-10 * (q - p).norm_squared();
+            let words = error.as_ref().map(Error::to_string).unwrap_or_default();
+            flat && words.contains(&format!("edge {a}-{b}")) && words.contains(&format!("vertex {wing}"))
+        }
+        _ => false,
+    };
+    row.holds(named, || format!("{grid:?}, {:?}, foot {foot}, height {height:e}: {error:?}", edge.ends))
+}
+
+/// Slender cells: the patch test to 1e-9 of the sheet's longer side, or an error that names the triangle.
+pub(crate) fn case_10(extent: Extent) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for model in Model::ALL {
+        for decades in 0..=6 {
+            let row = Row::measured(10, format!("{model}, cells 1e{decades} : 1"), "error of places", 1e-9);
+            let inputs = (-3.0..1.0, prop::bool::ANY, 0.9..1.1, -0.05..0.05, 0.9..1.1);
+            rows.push(for_all(
+                row,
+                extent.runs(2, 200),
+                inputs,
+                |row, (size, tall, weft, shear, warp): (f64, bool, f64, f64, f64)| {
+                    let ratio = 10f64.powi(-decades);
+                    let long = 10f64.powf(size);
+                    let [width, height] = if tall { [ratio * long, long] } else { [long, ratio * long] };
+                    // A lattice of springs is not stable in compression: it has lower states than the affine one.
+                    let least = if model == Model::Springs { 1.0 } else { 0.0 };
+                    let [weft, warp] = [weft, warp].map(|stretch| f64::max(stretch, least));
+                    slender(row, model, [width, height], [weft, shear, warp])
+                },
+            ));
+        }
+    }
+    let row = Row::new(10, "cells 1e11 : 1 and more: the triangle is named");
+    rows.push(for_all(
+        row,
+        extent.runs(100, 5_000),
+        (11.0..150.0, -3.0..1.0),
+        |row, (decades, size): (f64, f64)| {
+            let width: f64 = 10f64.powf(size);
+            let height = width * 10f64.powf(-decades);
+            let grid = Grid { columns: 4, rows: 3, width, height, diagonals: Diagonals::Forward };
+            let error = grid.mesh().err();
+            row.holds(matches!(error, Some(Error::ZeroArea { .. })), || {
+                format!("{width:e} × {height:e}: {error:?}")
+            })
+        },
+    ));
+    rows
+}
+
+/// A grid whose border is held by an affine map; its inner nodes find their places. Alike stiff either way, so that the cells
+/// alone make the problem ill-conditioned.
+fn slender(row: &mut Row, model: Model, [width, height]: [f64; 2], [weft, shear, warp]: [f64; 3]) -> bool {
+    let mesh = Grid { columns: 5, rows: 5, width, height, diagonals: Diagonals::Alternating }.mesh().unwrap();
+    let curves: Vec<_> = MEMBRANE.map(|component| (component, 300.0)).into();
+    let mut sample = Sample::at_rest(mesh, model, samples::linear_curves(model, &curves).unwrap());
+    sample.planar = true;
+    let border = |c: f64, side: f64| c == 0.0 || c > 0.999 * side;
+    sample.hold(|p| (border(p.x, width) || border(p.y, height)).then_some(0));
+    // Without turning the long side, whose rounding would move the short one.
+    sample.place(|p| {
+        let [u, v] = if width > height { [p.x + shear * p.y, warp * p.y] } else { [p.x, p.y + shear * p.x] };
+        let [stretch_u, stretch_v] = if width > height { [weft, 1.0] } else { [weft, warp] };
+        Vector3::new(stretch_u * u, stretch_v * v, 0.0)
+    });
+    let exact = sample.start.clone();
+    sample.perturb(1e-3 * width.min(height));
+    let cloth = sample.cloth().unwrap();
+    let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
+    let found = Solver::new(&cloth).solve(&sample.curves, &mut sample.start, &settings);
+    row.iterations = row.iterations.max(found.iterations);
+    let error = sample.start.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
+    let input = || format!("{width:e} × {height:e}, {weft}, {shear}, {warp}: {found:?}");
+    if !found.converged() {
+        return row.holds(false, input);
+    }
+    row.by_rounding += u64::from(found.limit == Limit::Rounding);
+    row.measure(error / width.max(height), input)
+}
+
+/// Turned by any rotation and moved by a metre or a kilometre, a sheet has the same forces.
+pub(crate) fn case_12(extent: Extent) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for model in Model::ALL {
+        for (distance, limit) in [(0.0, 1e-9), (1.0, 1e-9), (1e3, 1e-6)] {
+            let row = Row::measured(12, format!("{model}, moved by {distance} m"), "change of force", limit);
+            let inputs =
+                (prop::array::uniform3(-PI..PI), prop::array::uniform3(-1.0..1.0), -3.0..9.0, 0.0..0.3);
+            rows.push(for_all(
+                row,
+                extent.runs(200, 10_000),
+                inputs,
+                |row, (turn, way, ratio, jitter): (_, [f64; 3], f64, f64)| {
+                    let way = Vector3::from(way) * distance;
+                    moved(row, model, Vector3::from(turn), way, (10f64.powf(ratio), jitter))
+                },
+            ));
+        }
+    }
+    rows
+}
+
+/// * `ratio` — membrane over bending stiffness, in the sheet's own units
+fn moved(
+    row: &mut Row,
+    model: Model,
+    turn: Vector3<f64>,
+    way: Vector3<f64>,
+    (ratio, jitter): (f64, f64),
+) -> bool {
+    let bend = 300.0 * SIDE * SIDE / ratio;
+    let curves = samples::fabric(model, [300.0, 30.0, bend]).unwrap();
+    let mut sample = Sample::at_rest(samples::square(5, Diagonals::Alternating).unwrap(), model, curves);
+    sample.hold(|p| (p.x == 0.0).then_some(0));
+    sample.place(|p| Vector3::new(1.1 * p.x + 0.1 * p.y, 0.95 * p.y, 0.3 * (p.x / SIDE).sin() * p.y));
+    sample.perturb(jitter * 0.25 * SIDE);
+    let cloth = sample.cloth().unwrap();
+    let (before, scale) = balance::forces(&cloth, &sample.curves, &sample.start);
+    let rotation = Rotation3::new(turn);
+    sample.place(|p| rotation * p + way);
+    let (after, _) = balance::forces(&cloth, &sample.curves, &sample.start);
+    let largest = scale.magnitude.iter().copied().fold(0.0, larger);
+    let change = before.iter().zip(&after).map(|(b, a)| (rotation * b - a).norm()).fold(0.0, larger);
+    row.measure(change / largest, || format!("{turn:?}, {way:?}, ratio {ratio:e}, jitter {jitter}"))
+}

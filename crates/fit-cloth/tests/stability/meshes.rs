@@ -1,0 +1,431 @@
+//! Cases 13 to 19: meshes that are none, and sheets that nothing holds. Every defect is an error that names its place.
+
+use crate::property::for_all;
+use crate::table::{Extent, Row};
+use cloth_fit::frame::MeasurementSet;
+use cloth_fit::io::{read_set, write_set};
+use cloth_sim::cloth::Cloth;
+use cloth_sim::error::{Error, Part, Result};
+use cloth_sim::load::Held;
+use cloth_sim::material::Model;
+use cloth_sim::mesh::{Diagonals, Grid, Mesh};
+use cloth_sim::samples::{self, Sample};
+use nalgebra::{Rotation3, Vector2, Vector3};
+use proptest::prelude::*;
+use std::path::Path;
+
+/// What a mesh is made of.
+#[derive(Debug, Clone)]
+struct Parts {
+    positions: Vec<Vector3<f64>>,
+    material: Vec<Vector2<f64>>,
+    triangles: Vec<[usize; 3]>,
+}
+
+impl Parts {
+    fn mesh(&self) -> Result<Mesh> {
+        Mesh::new(self.positions.clone(), self.material.clone(), self.triangles.clone())
+    }
+
+    /// Area over the square of the longest side, at rest.
+    fn slimness(&self, triangle: usize) -> f64 {
+        let [p, q, r] = self.triangles[triangle].map(|vertex| self.positions[vertex]);
+        let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
+        (q - p).cross(&(r - p)).norm() / longest
+    }
+}
+
+/// Sheets of 1 mm to 10 m, lying anywhere, in 2×2 to 6×6 nodes; and a number that chooses a place in them.
+fn sheets() -> impl Strategy<Value = (Parts, usize)> {
+    let splits = prop::sample::select(vec![
+        Diagonals::Forward,
+        Diagonals::Backward,
+        Diagonals::Alternating,
+        Diagonals::Crossed,
+    ]);
+    let turn = prop::array::uniform3(-3.0..3.0);
+    (2..7usize, 2..7usize, -3.0..1.0, -1.0..1.0, splits, turn, 0..100_000usize).prop_map(
+        |(columns, rows, size, aspect, diagonals, turn, at)| {
+            let width = 10f64.powf(size);
+            let height = width * 10f64.powf(aspect);
+            let mesh = Grid { columns, rows, width, height, diagonals }.mesh().unwrap();
+            let rotation = Rotation3::new(Vector3::from(turn));
+            let positions =
+                mesh.positions.iter().map(|p| rotation * p + Vector3::from(turn) * width).collect();
+            (Parts { positions, material: mesh.material, triangles: mesh.triangles }, at)
+        },
+    )
+}
+
+/// A row of sheets that are spoilt somewhere.
+///
+/// * `spoil` — changes the sheet at a place
+/// * `named` — whether the error is the right one; and the words that must stand in its message
+fn spoilt(
+    case: u8,
+    condition: &str,
+    extent: Extent,
+    spoil: impl Fn(&mut Parts, usize),
+    named: impl Fn(&Error, &Parts) -> Option<String>,
+) -> Row {
+    for_all(Row::new(case, condition), extent.runs(300, 10_000), sheets(), |row, (mut sheet, at)| {
+        if let Err(error) = sheet.mesh() {
+            return row.holds(false, || format!("sound, but {error}"));
+        }
+        spoil(&mut sheet, at);
+        let found = sheet.mesh().err();
+        let words = found.as_ref().and_then(|error| named(error, &sheet));
+        let holds =
+            found.as_ref().zip(words).is_some_and(|(error, words)| error.to_string().contains(&words));
+        row.holds(holds, || format!("{at}: {found:?}"))
+    })
+}
+
+/// NaN, duplicate and unreferenced vertices, and vertices that are not there.
+pub(crate) fn case_13(extent: Extent) -> Vec<Row> {
+    let not_finite = |error: &Error, _: &Parts| match error {
+        Error::NotFinite { vertex, .. } => Some(format!("vertex {vertex}: ")),
+        _ => None,
+    };
+    let mut rows = Vec::new();
+    for (what, bad) in [("NaN", f64::NAN), ("infinite", f64::INFINITY)] {
+        rows.push(spoilt(
+            13,
+            &format!("{what} rest position"),
+            extent,
+            |sheet, at| {
+                let len = sheet.positions.len();
+                sheet.positions[at % len][at % 3] = bad;
+            },
+            not_finite,
+        ));
+        rows.push(spoilt(
+            13,
+            &format!("{what} material coordinate"),
+            extent,
+            |sheet, at| {
+                let len = sheet.material.len();
+                sheet.material[at % len][at % 2] = bad;
+            },
+            not_finite,
+        ));
+    }
+    rows.push(spoilt(
+        13,
+        "duplicate vertex",
+        extent,
+        |sheet, at| {
+            let len = sheet.positions.len();
+            let from = (at + 1 + at / len % (len - 1)) % len;
+            sheet.positions[at % len] = sheet.positions[from];
+        },
+        |error, sheet| match *error {
+            Error::DuplicateVertex { first, second } if sheet.positions[first] == sheet.positions[second] => {
+                Some(format!("vertices {first} and {second}"))
+            }
+            _ => None,
+        },
+    ));
+    rows.push(spoilt(
+        13,
+        "vertex without a triangle",
+        extent,
+        |sheet, _| {
+            sheet.positions.push(Vector3::repeat(1e3));
+            sheet.material.push(Vector2::repeat(1e3));
+        },
+        |error, sheet| match *error {
+            Error::UnreferencedVertex { vertex } if vertex + 1 == sheet.positions.len() => {
+                Some(format!("vertex {vertex} belongs to no triangle"))
+            }
+            _ => None,
+        },
+    ));
+    for (what, twice) in [("index out of range", false), ("a vertex twice in a triangle", true)] {
+        rows.push(spoilt(
+            13,
+            what,
+            extent,
+            |sheet, at| {
+                let (triangle, len) = (at % sheet.triangles.len(), sheet.positions.len());
+                sheet.triangles[triangle][at % 3] =
+                    if twice { sheet.triangles[triangle][(at + 1) % 3] } else { len + at };
+            },
+            |error, sheet| match *error {
+                Error::BadIndex { triangle, vertex, .. } if sheet.triangles[triangle].contains(&vertex) => {
+                    Some(format!("triangle {triangle}: vertex {vertex}"))
+                }
+                _ => None,
+            },
+        ));
+    }
+    rows
+}
+
+/// A triangle without area at rest.
+pub(crate) fn case_14(extent: Extent) -> Vec<Row> {
+    [("exactly on the edge", 0.0), ("1e-12 of the edge above it", 1e-12)]
+        .into_iter()
+        .map(|(condition, height)| {
+            spoilt(
+                14,
+                condition,
+                extent,
+                |sheet, at| {
+                    let [a, b, c] = sheet.triangles[at % sheet.triangles.len()];
+                    let [p, q, r] = [a, b, c].map(|vertex| sheet.positions[vertex]);
+                    let foot = 0.1 + 0.8 * (at % 97) as f64 / 97.0;
+                    let across = (r - p) - (q - p) * ((r - p).dot(&(q - p)) / (q - p).norm_squared());
+                    let up = across.normalize() * (height * (q - p).norm());
+                    sheet.positions[c] = p + (q - p) * foot + up;
+                },
+                |error, sheet| match *error {
+                    Error::ZeroArea { triangle } if sheet.slimness(triangle) <= 1e-10 => {
+                        Some(format!("triangle {triangle}: its rest area is zero"))
+                    }
+                    _ => None,
+                },
+            )
+        })
+        .collect()
+}
+
+/// An edge with three faces: a fin on any inner edge.
+pub(crate) fn case_15(extent: Extent) -> Vec<Row> {
+    [false, true]
+        .into_iter()
+        .map(|turned| {
+            let condition = if turned { "wound one way" } else { "wound the other way" };
+            spoilt(
+                15,
+                condition,
+                extent,
+                |sheet, at| {
+                    let edges = sheet.mesh().unwrap().edges().unwrap();
+                    let inner: Vec<_> = edges.iter().filter(|edge| edge.right.is_some()).collect();
+                    let [a, b] = inner[at % inner.len()].ends;
+                    let fin = sheet.positions.len();
+                    // The mirror image of the edge's left wing, up: both positions and material keep its lengths.
+                    let left = inner[at % inner.len()].left;
+                    let [p, q, r] = [a, b, left].map(|vertex| sheet.positions[vertex]);
+                    let turn = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(q - p), 1.0);
+                    sheet.positions.push(p + turn * (r - p));
+                    sheet.material.push(sheet.material[left]);
+                    sheet.triangles.push(if turned { [b, a, fin] } else { [a, b, fin] });
+                },
+                |error, sheet| match *error {
+                    Error::ThreeTriangles { edge, triangles } => {
+                        let share =
+                            |triangle: usize| edge.iter().all(|v| sheet.triangles[triangle].contains(v));
+                        triangles.into_iter().all(share).then(|| format!("edge {}-{} ", edge[0], edge[1]))
+                    }
+                    _ => None,
+                },
+            )
+        })
+        .collect()
+}
+
+/// A triangle wound against its neighbours.
+pub(crate) fn case_16(extent: Extent) -> Vec<Row> {
+    [("one triangle", 1), ("every second triangle", 2)]
+        .into_iter()
+        .map(|(condition, every)| {
+            spoilt(
+                16,
+                condition,
+                extent,
+                |sheet, at| {
+                    let len = sheet.triangles.len();
+                    let flip = |i: usize| if every == 1 { i == at % len } else { i % 2 == at % 2 };
+                    let triangles = sheet.triangles.iter_mut().enumerate();
+                    triangles.filter(|(i, _)| flip(*i)).for_each(|(_, triangle)| triangle.swap(0, 1));
+                },
+                |error, sheet| match *error {
+                    Error::MixedWinding { edge, triangles: [a, b] } => {
+                        let share =
+                            |triangle: usize| edge.iter().all(|v| sheet.triangles[triangle].contains(v));
+                        (share(a) && share(b) && a != b).then(|| format!("triangles {a} and {b} "))
+                    }
+                    _ => None,
+                },
+            )
+        })
+        .collect()
+}
+
+/// Material coordinates that are missing, mirrored, or of another size; what agrees within 1 % is taken.
+pub(crate) fn case_17(extent: Extent) -> Vec<Row> {
+    let lengths = |error: &Error, _: &Parts| match *error {
+        Error::EdgeLength { edge, .. } => Some(format!("edge {}-{}: ", edge[0], edge[1])),
+        _ => None,
+    };
+    let mirrored = |error: &Error, _: &Parts| match *error {
+        Error::MirroredMaterial { triangle } => Some(format!("triangle {triangle}: ")),
+        _ => None,
+    };
+    let map = |of: fn(Vector2<f64>) -> Vector2<f64>| {
+        move |sheet: &mut Parts, _: usize| sheet.material.iter_mut().for_each(|m| *m = of(*m))
+    };
+    let mut rows = vec![
+        spoilt(
+            17,
+            "missing",
+            extent,
+            |sheet, at| sheet.material.truncate(at % sheet.material.len()),
+            |error, _| matches!(error, Error::ShapeMismatch { .. }).then(|| "material coordinates".into()),
+        ),
+        spoilt(17, "mirrored", extent, map(|m| Vector2::new(-m.x, m.y)), mirrored),
+        spoilt(17, "weft and warp exchanged", extent, map(|m| m.yx()), mirrored),
+        spoilt(17, "1.1 % too long", extent, map(|m| m * 1.011), lengths),
+        spoilt(
+            17,
+            "one in thousand of a vertex's",
+            extent,
+            |sheet, at| {
+                let len = sheet.material.len();
+                sheet.material[at % len] *= 1e3;
+                sheet.material[at % len].x += 1e3;
+            },
+            lengths,
+        ),
+        spoilt(17, "sheared by 30 %", extent, map(|m| Vector2::new(m.x + 0.3 * m.y, m.y)), lengths),
+    ];
+    let row = Row::new(17, "0.9 % too long or short: taken");
+    rows.push(for_all(
+        row,
+        extent.runs(300, 10_000),
+        (sheets(), -0.009..0.009),
+        |row, ((mut sheet, _), by)| {
+            sheet.material.iter_mut().for_each(|m| *m *= 1.0 + by);
+            let found = sheet.mesh();
+            row.holds(found.is_ok(), || format!("{by}: {found:?}"))
+        },
+    ));
+    rows
+}
+
+/// Millimetres read as metres: in one of two places the lengths disagree; in all of them no specimen is so large.
+pub(crate) fn case_18(extent: Extent) -> Vec<Row> {
+    let asked = |error: &Error, _: &Parts| {
+        matches!(error, Error::EdgeLength { .. }).then(|| "(millimetres?)".to_string())
+    };
+    let mut rows = vec![
+        spoilt(
+            18,
+            "rest positions",
+            extent,
+            |sheet, _| {
+                sheet.positions.iter_mut().for_each(|p| *p *= 1e3);
+            },
+            asked,
+        ),
+        spoilt(
+            18,
+            "material coordinates",
+            extent,
+            |sheet, _| {
+                sheet.material.iter_mut().for_each(|m| *m *= 1e3);
+            },
+            asked,
+        ),
+    ];
+    for what in ["the whole specimen", "clip poses", "measured shapes"] {
+        rows.push(in_millimetres(what));
+    }
+    rows
+}
+
+/// Every sequence of a set that comes with the repository, written with some of its lengths a thousand times larger.
+fn in_millimetres(what: &str) -> Row {
+    let mut row = Row::new(18, format!("{what}, in a set's files"));
+    let set = read_set(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/cotton-denim")).unwrap();
+    for mut sequence in set.sequences {
+        let folder = tempfile::tempdir().unwrap();
+        match what {
+            "the whole specimen" => {
+                sequence.mesh.positions.iter_mut().for_each(|p| *p *= 1e3);
+                sequence.mesh.material.iter_mut().for_each(|m| *m *= 1e3);
+            }
+            "clip poses" => {
+                let poses = sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses);
+                poses.for_each(|pose| pose.translation.vector *= 1e3);
+                // A single clip, or one that is held still, is as far from itself as ever.
+                if sequence.clips.len() < 2 {
+                    continue;
+                }
+            }
+            _ => {
+                let shapes = sequence.frames.iter_mut().filter_map(|frame| frame.positions.as_mut());
+                let mut any = false;
+                shapes.flatten().for_each(|p| (any, *p) = (true, *p * 1e3));
+                if !any {
+                    continue;
+                }
+            }
+        }
+        let name = sequence.name.clone();
+        // What is written is read back, and refused if that is.
+        let one = MeasurementSet { fabric: set.fabric.clone(), sequences: vec![sequence] };
+        let message = write_set(folder.path(), &one).err().map(|error| error.to_string());
+        let named = message.as_ref().is_some_and(|message| message.contains("millimetres"));
+        row.holds(named, || format!("{name}: {message:?}"));
+    }
+    row
+}
+
+/// Sheets apart from one another, some of them held: each of the others is named.
+pub(crate) fn case_19(extent: Extent) -> Vec<Row> {
+    let conditions = Model::ALL.into_iter().flat_map(|model| [false, true].map(|planar| (model, planar)));
+    conditions
+        .map(|(model, planar)| {
+            let free = if planar { 3 } else { 6 };
+            let row = Row::new(19, format!("{model}, {free} rigid motions free"));
+            let inputs = (prop::collection::vec((prop::bool::ANY, 2..6usize), 1..6), -3.0..1.0);
+            for_all(row, extent.runs(100, 5_000), inputs, |row, (sheets, size): (Vec<_>, f64)| {
+                apart(row, model, planar, &sheets, 10f64.powf(size))
+            })
+        })
+        .collect()
+}
+
+/// Sheets of so many nodes a side, each held at one node or not.
+fn apart(row: &mut Row, model: Model, planar: bool, sheets: &[(bool, usize)], size: f64) -> bool {
+    let (mut positions, mut material, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut held, mut loose) = (Vec::new(), Vec::new());
+    for (index, &(pinned, nodes)) in sheets.iter().enumerate() {
+        let (width, height, diagonals) = (size, size, Diagonals::Alternating);
+        let one = Grid { columns: nodes, rows: nodes, width, height, diagonals }.mesh().unwrap();
+        let first = positions.len();
+        positions.extend(one.positions.iter().map(|p| p + Vector3::x() * (2.0 * size * index as f64)));
+        material.extend(one.material);
+        triangles.extend(one.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
+        match pinned {
+            true => held.push(Held { node: first + nodes, clip: None }),
+            false => loose.push(Part { vertex: first, vertices: nodes * nodes }),
+        }
+    }
+    // Parts are told from one another before anything else is looked at: springs would want a grid.
+    let mesh = Mesh::new(positions, material, triangles).unwrap();
+    let stiffnesses = [300.0, 30.0, if planar { 0.0 } else { 1e-6 }];
+    let mut sample = Sample::at_rest(mesh, model, samples::fabric(model, stiffnesses).unwrap());
+    sample.held = held;
+    sample.planar = planar;
+    let components: Vec<_> = sample.curves.components().filter(|c| !planar || !c.is_bending()).collect();
+    let error = Cloth::new(&sample.problem(&components, &[])).err();
+    let message = error.as_ref().map(Error::to_string).unwrap_or_default();
+    let expected = if planar { 3 } else { 6 };
+    let holds = match &error {
+        Some(Error::Unpinned { parts, free }) => {
+            let named = |part: &Part| message.contains(&format!("vertex {} ({}", part.vertex, part.vertices));
+            *parts == loose
+                && parts.iter().all(named)
+                && *free == expected
+                && message.contains(&format!("{expected} rigid motions free"))
+        }
+        Some(Error::NeedsGrid { .. }) => model == Model::Springs && loose.is_empty(),
+        None => loose.is_empty(),
+        _ => false,
+    };
+    row.holds(holds, || format!("{sheets:?}, {size}: {error:?}"))
+}
