@@ -6,6 +6,8 @@ mod hold;
 mod motion;
 mod sheet;
 mod start;
+#[cfg(test)]
+mod tests;
 
 pub use file::Measure;
 pub use hold::Circle;
@@ -165,8 +167,17 @@ impl Scene {
 
 /// Three finite numbers.
 fn vector(file: &TomlFile, key: &str, value: [f64; 3]) -> Result<Vector3<f64>> {
-    if value.iter().all(|component| component.is_finite()) && !file.has(&format!("{key}[3]")) {
+    check_length(file, key, 3)?;
+    if value.iter().all(|component| component.is_finite()) {
         return Ok(value.into());
     }
     Err(file.invalid(key, format!("{value:?}"), "three finite numbers"))
+}
+
+/// Refuses an array longer than what it is read as: the rest would be dropped in silence.
+fn check_length(file: &TomlFile, key: &str, length: usize) -> Result<()> {
+    if !file.has(&format!("{key}[{length}]")) {
+        return Ok(());
+    }
+    Err(file.invalid(key, format!("more than {length} numbers"), format!("an array of length {length}")))
 }

@@ -1,7 +1,7 @@
 //! What holds the sheet of a scene.
 
 use super::file::{BoxFile, CircleFile, Corner, EdgeName, FreeName, HoldFile};
-use super::vector;
+use super::{check_length, vector};
 use cloth_fit::error::Result;
 use cloth_fit::io::TomlFile;
 use cloth_sim::load::{Free, Guided, Held};
@@ -34,6 +34,9 @@ pub(super) fn holds(holds: &[HoldFile], mesh: &Mesh, file: &TomlFile) -> Result<
     let mut guided = BTreeMap::new();
     for (clip, hold) in holds.iter().enumerate() {
         let key = format!("held[{clip}]");
+        for pair in ["box.low_m", "box.high_m", "circle.centre_m"] {
+            check_length(file, &format!("{key}.{pair}"), 2)?;
+        }
         let nodes = select(hold, &key, mesh, file)?;
         if nodes.is_empty() {
             return Err(file.invalid(&key, "no node there", "a place where the sheet has nodes"));
@@ -58,19 +61,6 @@ pub(super) fn holds(holds: &[HoldFile], mesh: &Mesh, file: &TomlFile) -> Result<
 }
 
 fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Vec<usize>> {
-    let HoldFile { corner, edge, within, circle, nodes, .. } = hold;
-    let named = [corner.is_some(), edge.is_some(), within.is_some(), circle.is_some(), nodes.is_some()];
-    if named.into_iter().filter(|&named| named).count() != 1 {
-        let expected = "one of corner, edge, box, circle and nodes";
-        return Err(file.invalid(key, "none or several places", expected));
-    }
-    if let Some(nodes) = nodes {
-        if let Some(index) = nodes.iter().position(|&node| node >= mesh.len()) {
-            let expected = format!("vertices from 0 to {}", mesh.len() - 1);
-            return Err(file.invalid(&format!("{key}.nodes[{index}]"), nodes[index].to_string(), expected));
-        }
-        return Ok(nodes.clone());
-    }
     let fold = |start: f64, of: fn(f64, f64) -> f64| {
         mesh.material.iter().fold(Vector2::repeat(start), |m, p| m.zip_map(p, of))
     };
@@ -79,8 +69,9 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
     let all = |inside: &dyn Fn(Vector2<f64>) -> bool| -> Vec<usize> {
         (0..mesh.len()).filter(|&node| inside(mesh.material[node])).collect()
     };
-    Ok(match (corner, edge, within, circle) {
-        (Some(corner), ..) => {
+    let HoldFile { corner, edge, within, circle, nodes, .. } = hold;
+    Ok(match (corner, edge, within, circle, nodes) {
+        (Some(corner), None, None, None, None) => {
             let at = match corner {
                 Corner::BottomLeft => low,
                 Corner::BottomRight => Vector2::new(high.x, low.y),
@@ -91,20 +82,31 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
                 .min_by(|&a, &b| (mesh.material[a] - at).norm().total_cmp(&(mesh.material[b] - at).norm()));
             nearest.into_iter().collect()
         }
-        (_, Some(edge), ..) => all(&|p| match edge {
+        (None, Some(edge), None, None, None) => all(&|p| match edge {
             EdgeName::Left => p.x - low.x < reach,
             EdgeName::Right => high.x - p.x < reach,
             EdgeName::Bottom => p.y - low.y < reach,
             EdgeName::Top => high.y - p.y < reach,
         }),
-        (_, _, Some(BoxFile { low_m, high_m }), _) => {
+        (None, None, Some(BoxFile { low_m, high_m }), None, None) => {
             all(&|p| (0..2).all(|i| low_m[i] - reach <= p[i] && p[i] <= high_m[i] + reach))
         }
-        (.., Some(CircleFile { centre_m, radius_m })) => {
+        (None, None, None, Some(CircleFile { centre_m, radius_m }), None) => {
             let centre = Vector2::from(*centre_m);
             all(&|p| (p - centre).norm() <= radius_m + reach)
         }
-        _ => Vec::new(),
+        (None, None, None, None, Some(nodes)) => {
+            if let Some(index) = nodes.iter().position(|&node| node >= mesh.len()) {
+                let key = format!("{key}.nodes[{index}]");
+                let expected = format!("vertices from 0 to {}", mesh.len() - 1);
+                return Err(file.invalid(&key, nodes[index].to_string(), expected));
+            }
+            nodes.clone()
+        }
+        _ => {
+            let expected = "one of corner, edge, box, circle and nodes";
+            return Err(file.invalid(key, "none or several places", expected));
+        }
     })
 }
 

@@ -1,8 +1,8 @@
 //! The sheet of a scene, placed in space.
 
 use super::file::{Axis, DiscFile, GridFile, MeshFile, SheetFile};
-use super::vector;
-use cloth_fit::error::{Error, Result};
+use super::{check_length, vector};
+use cloth_fit::error::Result;
 use cloth_fit::io::{TomlFile, YarnAxes, read_mesh};
 use cloth_sim::mesh::{Disc, Grid, Mesh};
 use nalgebra::Vector3;
@@ -16,6 +16,7 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
     let refuse = |key: &str, error: cloth_sim::error::Error| {
         file.invalid(key, error.to_string(), "a sheet that can be")
     };
+    check_length(file, "sheet.grid.nodes", 2)?;
     let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
         (Some(grid), None, None) => of_grid(grid).mesh().map_err(|error| refuse("sheet.grid", error))?,
         (None, Some(disc), None) => {
@@ -84,12 +85,14 @@ fn place(flat: Mesh, sheet: &SheetFile, file: &TomlFile) -> Result<Mesh> {
     let weft = axis("sheet.weft", sheet.weft, Vector3::x())?;
     let warp = axis("sheet.warp", sheet.warp, Vector3::y())?;
     if weft.dot(&warp).abs() > PERPENDICULAR {
-        return Err(file.invalid("sheet.warp", format!("{:?}", sheet.warp), "a direction across weft"));
+        let found = format!("{:.4}° from weft", weft.angle(&warp).to_degrees());
+        return Err(file.invalid("sheet.warp", found, "a direction across weft, at 90°"));
     }
     let origin = vector(file, "sheet.origin_m", sheet.origin_m.unwrap_or_default())?;
     let positions = flat.material.iter().map(|m| origin + m.x * weft + m.y * warp).collect();
     let grid = flat.grid;
+    // What was a sheet about the origin is none where numbers are too far apart to tell its nodes from one another.
     let mesh = Mesh::new(positions, flat.material, flat.triangles)
-        .map_err(|source| Error::Mechanics { context: "sheet".into(), source })?;
+        .map_err(|error| file.invalid("sheet.origin_m", error.to_string(), "a place nearer to zero"))?;
     Ok(Mesh { grid, ..mesh })
 }

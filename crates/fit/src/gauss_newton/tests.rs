@@ -1,3 +1,5 @@
+mod endings;
+
 use super::{Domain, Evaluation, Globalisation, Iteration, Options, Outcome, Residuals, Status, minimise};
 use nalgebra::{Complex, DMatrix, DVector};
 use rand::SeedableRng;

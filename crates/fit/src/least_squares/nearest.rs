@@ -9,7 +9,7 @@ use super::scaled::unit_or;
 use nalgebra::{DMatrix, DVector};
 
 impl LeastSquares {
-    /// The minimiser to about 1e-8 of its size, without any polish; directions that the data do not see are left to the
+    /// The minimiser to about 1e-5 of its size, without any polish; directions that the data do not see are left to the
     /// method. `smoothing` has no effect. `None` where the method finds no solution.
     ///
     /// With p = ℓ x/norms, t = J p/ℓ and rows of unit length:

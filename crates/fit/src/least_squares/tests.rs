@@ -1,3 +1,5 @@
+mod unpolished;
+
 use super::dense::Spectrum;
 use super::{Bound, LeastSquares, Smoothing, Solution, Status};
 use nalgebra::{DMatrix, DVector};
