@@ -98,14 +98,28 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
             EdgeName::Top => high.y - p.y < reach,
         }),
         (_, _, Some(BoxFile { low_m, high_m }), _) => {
+            let low_m = pair(file, &format!("{key}.box.low_m"), *low_m)?;
+            let high_m = pair(file, &format!("{key}.box.high_m"), *high_m)?;
             all(&|p| (0..2).all(|i| low_m[i] - reach <= p[i] && p[i] <= high_m[i] + reach))
         }
         (.., Some(CircleFile { centre_m, radius_m })) => {
-            let centre = Vector2::from(*centre_m);
+            let centre = Vector2::from(pair(file, &format!("{key}.circle.centre_m"), *centre_m)?);
+            if !(*radius_m >= 0.0 && radius_m.is_finite()) {
+                let key = format!("{key}.circle.radius_m");
+                return Err(file.invalid(&key, radius_m.to_string(), "0 or more"));
+            }
             all(&|p| (p - centre).norm() <= radius_m + reach)
         }
         _ => Vec::new(),
     })
+}
+
+/// Two finite numbers, and no third.
+fn pair(file: &TomlFile, key: &str, value: [f64; 2]) -> Result<[f64; 2]> {
+    if value.iter().all(|number| number.is_finite()) && !file.has(&format!("{key}[2]")) {
+        return Ok(value);
+    }
+    Err(file.invalid(key, format!("{value:?}"), "two finite numbers"))
 }
 
 /// In which directions the nodes may still move; `None` if in none.

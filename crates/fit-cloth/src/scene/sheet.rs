@@ -16,6 +16,9 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
     let refuse = |key: &str, error: cloth_sim::error::Error| {
         file.invalid(key, error.to_string(), "a sheet that can be")
     };
+    if file.has("sheet.grid.nodes[2]") {
+        return Err(file.invalid("sheet.grid.nodes", "more than two numbers", "columns and rows"));
+    }
     let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
         (Some(grid), None, None) => of_grid(grid).mesh().map_err(|error| refuse("sheet.grid", error))?,
         (None, Some(disc), None) => {
