@@ -292,6 +292,30 @@ pub(crate) fn case_36(extent: Extent) -> Vec<Row> {
             }
         }
     }
+    for model in TRIANGLES {
+        let row =
+            Row::new(36, format!("a shape upside down, bend-weft, {model}: that frame is flagged first"));
+        rows.push(for_all(
+            row,
+            extent.runs(3, 100),
+            (-1.0..1.0, -2.0..1.0, 0usize..5),
+            |row, (stiffness, size, frame)| {
+                let (stiffness, size) = scaled((stiffness, size));
+                let mut set = overhangs(size, stiffness);
+                set.sequences[0].frames[frame].positions.iter_mut().flatten().for_each(|p| p.z = -p.z);
+                let found = fit(&set, &Settings { nodes: Some([9, 9]), ..settings(model) });
+                let found = found.map(|(_, stage)| stage.sequences[0].outliers.clone());
+                row.holds(found.as_ref().is_ok_and(|frames| frames.first() == Some(&frame)), || {
+                    format!("frame {frame}, stiffness {stiffness:e}, size {size:e}: {found:?}")
+                })
+            },
+        ));
+        let mut row = Row::new(36, format!("no outlier, bend-weft, {model}: none is flagged"));
+        let found = fit(&overhangs(1.0, 1.0), &Settings { nodes: Some([9, 9]), ..settings(model) });
+        let found = found.map(|(_, stage)| stage.sequences[0].outliers.clone());
+        row.holds(found == Ok(Vec::new()), || format!("{found:?}"));
+        rows.push(row);
+    }
     for (kind, models) in UNIFORM {
         for &model in models {
             let row = Row::new(36, format!("no outlier, {kind}, {model}: none is flagged"));
