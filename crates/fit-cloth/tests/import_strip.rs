@@ -136,7 +136,7 @@ fn bad_input_ends_in_3_and_writes_nothing() {
         "force_N",
         "force",
         &[],
-        "weft.csv header: found no column \"force_N\", expected a column's name, exactly as it stands there",
+        "weft.csv:1 header: found no column \"force_N\", expected a column's name, exactly as it stands there",
     );
     check(
         "",

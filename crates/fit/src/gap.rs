@@ -13,7 +13,7 @@
 use crate::gauss_newton::Domain;
 use crate::least_squares::{LeastSquares, Smoothing};
 use crate::replica::Replica;
-use crate::simulation::parameter_columns;
+use crate::simulation::{parameter_columns, without_rounding};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -54,7 +54,10 @@ pub fn start(
             .roughness
             .clone()
             .map(|roughness| Smoothing { roughness, point: DVector::zeros(points) }),
-        ..LeastSquares::new(DMatrix::from_row_slice(target.len(), points, &rows), DVector::from_vec(target))
+        ..LeastSquares::new(
+            without_rounding(DMatrix::from_row_slice(target.len(), points, &rows)),
+            DVector::from_vec(target),
+        )
     };
     problem.solve().point
 }

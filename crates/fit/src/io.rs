@@ -13,6 +13,7 @@ mod clips;
 mod fabric;
 mod forces;
 mod frames;
+pub(crate) mod json_file;
 mod names;
 mod npy;
 mod number;
@@ -21,7 +22,7 @@ mod ply;
 mod scale;
 mod shape_file;
 mod shapes;
-mod source;
+pub(crate) mod source;
 pub mod table;
 mod test_file;
 #[cfg(test)]

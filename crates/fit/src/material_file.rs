@@ -11,11 +11,14 @@ pub use entry::{Correlation, CurveEntry, ResidualEntry};
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
+use crate::io::json_file::{parse, unique};
+use crate::io::source::read_text;
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::Diagonals;
 use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -38,6 +41,7 @@ pub struct MaterialFile {
     /// The sample that was measured.
     pub fabric: Fabric,
     /// One entry a component, observed or not.
+    #[serde(deserialize_with = "unique")]
     pub curves: BTreeMap<Component, CurveEntry>,
     /// How each sequence was met.
     pub residuals: Vec<ResidualEntry>,
@@ -66,6 +70,7 @@ pub struct Provenance {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagonals: Option<Diagonals>,
     /// Columns and rows of the simulation, a sequence each.
+    #[serde(deserialize_with = "unique")]
     pub nodes: BTreeMap<String, [usize; 2]>,
     /// What was changed after the fit, in order: repairs, and edits by hand.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -120,24 +125,14 @@ impl MaterialFile {
     /// # Errors
     /// A file that cannot be read, or is no such file, with line and field.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
-        let refuse = |error: serde_json::Error| {
-            Error::input(
-                path,
-                error.line(),
-                "material",
-                error.to_string(),
-                "a material.json that fit-cloth wrote",
-            )
-        };
+        let text = read_text(path)?;
         // The version first: another one may well have other fields.
-        let value: serde_json::Value = serde_json::from_str(&text).map_err(refuse)?;
+        let value: serde_json::Value = parse(path, &text)?;
         if value["schema"] != SCHEMA {
             return Err(Error::input(path, None, "schema", value["schema"].to_string(), SCHEMA));
         }
-        let file: Self = serde_json::from_str(&text).map_err(refuse)?;
-        file.named_curves()
-            .map_err(|(component, found)| Error::input(path, None, component.to_string(), found, CURVE))?;
+        let file: Self = parse(path, &text)?;
+        file.named_curves().map_err(|defect| defect.at(path, &text))?;
         Ok(file)
     }
 
@@ -176,20 +171,53 @@ impl MaterialFile {
     /// # Errors
     /// Control points that make no curve.
     pub fn curves(&self) -> Result<Curves> {
-        self.named_curves().map_err(|(component, found)| {
-            Error::input(Path::new("material.json"), None, component.to_string(), found, CURVE)
-        })
+        self.named_curves().map_err(|defect| defect.at(Path::new("material.json"), ""))
     }
 
-    fn named_curves(&self) -> std::result::Result<Curves, (Component, String)> {
+    fn named_curves(&self) -> std::result::Result<Curves, Defect> {
         let observed = self.curves.iter().filter(|(_, entry)| entry.observed);
         observed
             .map(|(&component, entry)| {
                 let negative = self.model.negative_strain(component, self.compression);
                 let curve = entry.curve(self.model, component, negative);
-                curve.map(|curve| (component, curve)).map_err(|found| (component, found))
+                curve.map(|curve| (component, curve)).map_err(|(point, reason)| Defect {
+                    component,
+                    point,
+                    reason,
+                })
             })
             .collect()
+    }
+}
+
+/// A control point that makes no curve.
+struct Defect {
+    component: Component,
+    /// Counted from 0.
+    point: usize,
+    reason: String,
+}
+
+impl Defect {
+    /// The error, with the line of the control point in the file's text.
+    fn at(self, path: &Path, text: &str) -> Error {
+        #[derive(Deserialize)]
+        struct File<'a> {
+            #[serde(borrow)]
+            curves: BTreeMap<Component, Entry<'a>>,
+        }
+        #[derive(Deserialize)]
+        struct Entry<'a> {
+            #[serde(borrow, default)]
+            control_points: Vec<&'a RawValue>,
+        }
+        let Self { component, point, reason } = self;
+        let places = serde_json::from_str::<File<'_>>(text).ok();
+        let place = places.as_ref().and_then(|file| file.curves.get(&component)?.control_points.get(point));
+        // A raw value is a part of the text itself.
+        let offset = place.map(|place| place.get().as_ptr() as usize - text.as_ptr() as usize);
+        let line = offset.map(|offset| 1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count());
+        Error::input(path, line, format!("curves.{component}.control_points[{point}]"), reason, CURVE)
     }
 }
 

@@ -74,7 +74,8 @@ pub struct SequenceReport {
     pub force_largest: f64,
     /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
     pub position_rms: Option<f64>,
-    /// Frames whose residual stands out from its neighbours', the farthest first: a slip, or a wrong sign.
+    /// Frames whose residual stands out from its neighbours', the farthest first: a slip, or a wrong sign; where no force
+    /// was measured, a shape far off.
     pub outliers: Vec<usize>,
     /// Frames that left an unstable equilibrium: they may have several. Their shapes are not in `position_rms`.
     pub multi_stable: Vec<usize>,

@@ -19,6 +19,7 @@ mod residual;
 
 pub(crate) use equilibria::parameter_columns;
 pub use meter::{Counters, Meter};
+pub(crate) use residual::without_rounding;
 
 use crate::replica::{Replica, ReplicaFrame};
 use crate::robust::Robust;

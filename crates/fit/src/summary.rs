@@ -8,7 +8,7 @@ use crate::uncertainty::Covariance;
 use cloth_sim::bending::Rolled;
 use cloth_sim::curve::StiffnessCurve;
 use nalgebra::DVector;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The curve with its bands, over the strains that the simulation's equilibria visit.
 pub(crate) fn curve_report(
@@ -99,6 +99,8 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     let mut reports: Vec<SequenceReport> = Vec::new();
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut positions: Vec<(f64, usize)> = Vec::new();
+    // Frames with the distance of their shape, and the largest overhang, where shapes alone are compared.
+    let mut shapes: Vec<(Vec<(usize, f64)>, f64)> = Vec::new();
     for (Settled { replica, frame, x, multi_stable }, simulated) in simulation.settled().zip(forces) {
         let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
             let grid = &replica.specimen.grid;
@@ -119,6 +121,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
             });
             sums.push([0.0; 4]);
             positions.push((0.0, 0));
+            shapes.push((Vec::new(), 0.0));
             reports.len() - 1
         });
         let report = &mut reports[at];
@@ -156,25 +159,35 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
         let compared = frame.observed.iter().filter(|_| !multi_stable);
         let free: BTreeSet<usize> =
             replica.cloth(frame).free_coordinates().iter().map(|(c, _)| c / 3).collect();
+        let (mut squares, mut seen) = (0.0, 0);
         for observed in compared {
             for &node in &free {
                 let place = 3 * node..3 * node + 3;
                 let square: f64 =
                     observed[place.clone()].iter().zip(&x[place]).map(|(o, x)| (o - x) * (o - x)).sum();
                 if square.is_finite() {
-                    positions[at].0 += square;
-                    positions[at].1 += 1;
+                    squares += square;
+                    seen += 1;
                 }
             }
         }
+        positions[at].0 += squares;
+        positions[at].1 += seen;
+        if seen > 0 {
+            shapes[at].0.push((frame.index, (squares / seen as f64).sqrt()));
+            shapes[at].1 = frame.extension.max(shapes[at].1);
+        }
     }
-    for ((report, [up, up_square, down, down_square]), (square, seen)) in
-        reports.iter_mut().zip(sums).zip(positions)
+    for (((report, [up, up_square, down, down_square]), (square, seen)), (shapes, overhang)) in
+        reports.iter_mut().zip(sums).zip(positions).zip(shapes)
     {
         let squares: f64 = report.forces.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
         let count = report.forces.len();
         report.force_rms = (count > 0).then(|| (squares / count as f64).sqrt());
-        report.outliers = outliers(&report.forces);
+        report.outliers = match count {
+            0 => shape_outliers(&shapes, overhang),
+            _ => force_outliers(&report.forces),
+        };
         report.position_rms = (seen > 0).then(|| (square / seen as f64).sqrt());
         if up_square > 0.0 && down_square > 0.0 {
             report.hysteresis = Some(Hysteresis { loading: up / up_square, unloading: down / down_square });
@@ -183,35 +196,48 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     reports
 }
 
-/// Frames whose residual stands out from its neighbours' of the same clip and direction: by more than a fiftieth of the
-/// largest force, and by more than six times the robust standard deviation of such differences (Hampel 1974). A smooth
-/// misfit, shared by neighbours, is none. The farthest first: it drags the fit, and others with it.
-fn outliers(rows: &[ForceRow]) -> Vec<usize> {
+/// Frames whose force stands out from its neighbours' of the same clip and direction: by more than a fiftieth of the
+/// largest force, and as [`standing_out`] says.
+fn force_outliers(rows: &[ForceRow]) -> Vec<usize> {
     let largest = rows.iter().map(|row| row.measured.abs()).fold(0.0, f64::max);
+    let mut tracks: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
+    for row in rows {
+        let track = tracks.entry((row.clip, row.number)).or_default();
+        track.push((row.frame, row.measured - row.simulated));
+    }
+    farthest_first(tracks.values().flat_map(|track| standing_out(track, 0.02 * largest)).collect())
+}
+
+/// Frames whose shape is farther from the simulated one than its neighbours' are, by more than a fiftieth of the largest
+/// overhang.
+///
+/// * `shapes` — frames with the root mean square distance of their nodes, m
+fn shape_outliers(shapes: &[(usize, f64)], overhang: f64) -> Vec<usize> {
+    farthest_first(standing_out(shapes, 0.02 * overhang))
+}
+
+/// Frames whose residual is off the median of its neighbours' by more than a least figure, and by more than six times the
+/// robust standard deviation of such differences (Hampel 1974); and by how much. A smooth misfit, shared by neighbours, is
+/// none.
+fn standing_out(track: &[(usize, f64)], least: f64) -> Vec<(usize, f64)> {
     let median = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
     };
-    let mut frames = Vec::new();
-    let mut first: Vec<&ForceRow> = Vec::new();
-    for row in rows {
-        if first.iter().any(|seen| seen.clip == row.clip && seen.number == row.number) {
-            continue;
-        }
-        first.push(row);
-        let track: Vec<&ForceRow> =
-            rows.iter().filter(|other| other.clip == row.clip && other.number == row.number).collect();
-        let residual: Vec<f64> = track.iter().map(|row| row.measured - row.simulated).collect();
-        let apart: Vec<f64> = (0..residual.len())
-            .map(|i| {
-                let around = i.saturating_sub(2)..(i + 3).min(residual.len());
-                (residual[i] - median(residual[around].to_vec())).abs()
-            })
-            .collect();
-        let limit = (6.0 * 1.4826 * median(apart.clone())).max(0.02 * largest);
-        frames.extend(track.iter().map(|row| row.frame).zip(apart).filter(|(_, apart)| *apart > limit));
-    }
-    frames.sort_by(|(_, a), (_, b): &(usize, f64)| b.total_cmp(a));
+    let residual: Vec<f64> = track.iter().map(|(_, residual)| *residual).collect();
+    let apart: Vec<f64> = (0..residual.len())
+        .map(|i| {
+            let around = i.saturating_sub(2)..(i + 3).min(residual.len());
+            (residual[i] - median(residual[around].to_vec())).abs()
+        })
+        .collect();
+    let limit = (6.0 * 1.4826 * median(apart.clone())).max(least);
+    track.iter().map(|(frame, _)| *frame).zip(apart).filter(|(_, apart)| *apart > limit).collect()
+}
+
+/// Each frame once, the farthest first: it drags the fit, and others with it.
+fn farthest_first(mut frames: Vec<(usize, f64)>) -> Vec<usize> {
+    frames.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     let mut found: Vec<usize> = Vec::new();
     for (frame, _) in frames {
         if !found.contains(&frame) {

@@ -146,10 +146,10 @@ fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {
         return Ok(KnownFabric::parse(Path::new(name), text)?);
     }
     let path = Path::new(name);
-    let text = std::fs::read_to_string(path).map_err(|error| {
+    if !path.exists() {
         let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
         let expected = format!("a known fabric ({}) or a fabric file", names.join(", "));
-        Failure::from(Error::input(path, None, "--fabric", error.to_string(), expected))
-    })?;
-    Ok(KnownFabric::parse(path, &text)?)
+        return Err(Error::input(path, None, "--fabric", "no such file", expected).into());
+    }
+    Ok(KnownFabric::read(path)?)
 }

@@ -34,9 +34,6 @@ pub(super) fn holds(holds: &[HoldFile], mesh: &Mesh, file: &TomlFile) -> Result<
     let mut guided = BTreeMap::new();
     for (clip, hold) in holds.iter().enumerate() {
         let key = format!("held[{clip}]");
-        for pair in ["box.low_m", "box.high_m", "circle.centre_m"] {
-            check_length(file, &format!("{key}.{pair}"), 2)?;
-        }
         let nodes = select(hold, &key, mesh, file)?;
         if nodes.is_empty() {
             return Err(file.invalid(&key, "no node there", "a place where the sheet has nodes"));
@@ -89,10 +86,16 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
             EdgeName::Top => high.y - p.y < reach,
         }),
         (None, None, Some(BoxFile { low_m, high_m }), None, None) => {
+            let low_m = pair(file, &format!("{key}.box.low_m"), *low_m)?;
+            let high_m = pair(file, &format!("{key}.box.high_m"), *high_m)?;
             all(&|p| (0..2).all(|i| low_m[i] - reach <= p[i] && p[i] <= high_m[i] + reach))
         }
         (None, None, None, Some(CircleFile { centre_m, radius_m }), None) => {
-            let centre = Vector2::from(*centre_m);
+            let centre = Vector2::from(pair(file, &format!("{key}.circle.centre_m"), *centre_m)?);
+            if !(*radius_m >= 0.0 && radius_m.is_finite()) {
+                let key = format!("{key}.circle.radius_m");
+                return Err(file.invalid(&key, radius_m.to_string(), "0 or more"));
+            }
             all(&|p| (p - centre).norm() <= radius_m + reach)
         }
         (None, None, None, None, Some(nodes)) => {
@@ -108,6 +111,15 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
             return Err(file.invalid(key, "none or several places", expected));
         }
     })
+}
+
+/// Two finite numbers.
+fn pair(file: &TomlFile, key: &str, value: [f64; 2]) -> Result<[f64; 2]> {
+    check_length(file, key, 2)?;
+    if value.iter().all(|number| number.is_finite()) {
+        return Ok(value);
+    }
+    Err(file.invalid(key, format!("{value:?}"), "two finite numbers"))
 }
 
 /// In which directions the nodes may still move; `None` if in none.

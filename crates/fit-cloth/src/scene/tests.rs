@@ -209,7 +209,7 @@ fn holds_that_hold_nothing() {
         (
             edge,
             "circle = { centre_m = [0, 0], radius_m = nan }",
-            ":5 held[0]: found no node there, expected a place where the sheet has nodes",
+            ":6 held[0].circle.radius_m: found NaN, expected 0 or more",
         ),
         (
             edge,

@@ -13,10 +13,8 @@ impl CurveFile {
     /// Not a table of such columns; a field that is no finite number; strains that do not ascend; no row.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Table::read(path)?;
-        let kind = match table.column(Kind::Bending.columns()[0]) {
-            Some(_) => Kind::Bending,
-            None => Kind::Membrane,
-        };
+        let bends = Kind::Bending.columns().iter().any(|name| table.column(name).is_some());
+        let kind = if bends { Kind::Bending } else { Kind::Membrane };
         let [axis, stiffness, stress, low, high] = kind.columns();
         let ([x, y], optional) = table.require([axis, stress], [stiffness, low, high])?;
         let column = |place: usize| -> Result<Vec<f64>> {

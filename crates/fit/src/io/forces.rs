@@ -18,7 +18,7 @@ pub(super) fn read(path: &Path, clips: &[Clip], frames: &mut [Frame]) -> Result<
     let point = match point {
         [Some(x), Some(y), Some(z)] => Some([x, y, z]),
         [None, None, None] => None,
-        _ => return Err(table.incomplete("header", "a part of px_m, py_m, pz_m", "all three or none")),
+        _ => return Err(table.bad_header("header", "a part of px_m, py_m, pz_m", "all three or none")),
     };
     for row in 0..table.rows() {
         let vector = |[x, y, z]: [usize; 3]| -> Result<_> {

@@ -97,6 +97,11 @@ impl Obj {
         match keyword {
             "v" => {
                 let [x, y, z] = self.numbers(line, keyword, &words, true)?;
+                let unseen = [x, y, z].iter().filter(|value| value.is_nan()).count();
+                if unseen == 1 || unseen == 2 {
+                    let found = format!("nan in {unseen} of 3 coordinates");
+                    return Err(self.invalid(line, keyword, found, "finite numbers, or nan in all three"));
+                }
                 self.vertices.push((line, Vector3::new(x, y, z)));
             }
             "vt" => {

@@ -1,6 +1,6 @@
 //! Vertices of a PLY file, text or binary; a shape as one.
 
-use super::source::{read_bytes, shown};
+use super::source::{decoded, read_bytes, shown};
 use crate::error::{Error, Result};
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
@@ -11,7 +11,10 @@ use std::path::Path;
 
 /// Reads x, y and z of the element `vertex`; in a binary file NaN = not observed.
 pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
-    let bytes = read_bytes(path)?;
+    let mut bytes = read_bytes(path)?;
+    if !is_binary(&bytes) {
+        bytes = decoded(path, bytes)?.into_bytes();
+    }
     let refuse = |error: ParseError, text: bool| {
         let message = error.to_string();
         let reason = message.lines().next().unwrap_or_default();
@@ -23,6 +26,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
     let mut reader = Reader::new(bytes.as_slice());
     let parser = Parser::<Vertex>::new();
     let header = parser.read_header(&mut reader).map_err(|error| refuse(error, true))?;
+    let mut line = 1 + bytes.split(|&byte| byte == b'\n').position(|line| line == b"end_header").unwrap_or(0);
     for (name, element) in &header.elements {
         check_size(path, element, bytes.len())?;
         let vertices = parser
@@ -40,10 +44,27 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
                     ));
                 }
             }
-            return Ok(vertices.into_iter().map(|vertex| vertex.0).collect());
+            let shape: Vec<Vector3<f64>> = vertices.into_iter().map(|vertex| vertex.0).collect();
+            let infinite = |p: &Vector3<f64>| p.iter().any(|value| value.is_infinite());
+            return match shape.iter().position(infinite).filter(|_| header.encoding == Encoding::Ascii) {
+                Some(vertex) => {
+                    let found = shown(&format!("{:?}", shape[vertex].as_slice()));
+                    Err(Error::input(path, line + vertex + 1, "vertex", found, "finite numbers"))
+                }
+                None => Ok(shape),
+            };
         }
+        // A text has a line a row.
+        line += element.count;
     }
     Err(Error::input(path, None, "element vertex", "nothing", "the vertices"))
+}
+
+/// True if the header says so: what stands below it is then no text.
+fn is_binary(bytes: &[u8]) -> bool {
+    const FORMAT: &[u8] = b"format binary";
+    let header = bytes.windows(10).position(|words| words == b"end_header").unwrap_or(bytes.len());
+    bytes[..header].windows(FORMAT.len()).any(|words| words == FORMAT)
 }
 
 /// A mesh with its vertices somewhere, as text.

@@ -1,5 +1,6 @@
 //! Millimetres read as metres: lengths that no cloth can reach.
 
+use super::shapes;
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Frame};
 use cloth_sim::mesh::Mesh;
@@ -8,6 +9,8 @@ use std::path::Path;
 
 /// No specimen is larger, m.
 const LARGEST_SPECIMEN: f64 = 10.0;
+/// What is expected instead.
+const METRES: &str = "metres (convert millimetres to metres?)";
 /// No fabric stretches so far.
 const LARGEST_STRETCH: f64 = 10.0;
 
@@ -15,7 +18,7 @@ const LARGEST_STRETCH: f64 = 10.0;
 /// are ten specimens apart.
 pub(super) fn check(folder: &Path, mesh: &Mesh, clips: &[Clip], frames: &[Frame]) -> Result<()> {
     let refuse = |file: &str, field: String, found: String| {
-        Err(Error::input(&folder.join(file), None, field, found, "metres (convert millimetres to metres?)"))
+        Err(Error::input(&folder.join(file), None, field, found, METRES))
     };
     let (low, high) = mesh
         .positions
@@ -36,7 +39,8 @@ pub(super) fn check(folder: &Path, mesh: &Mesh, clips: &[Clip], frames: &[Frame]
             let (long, all) = long_edges(mesh, shape);
             if 2 * long > all {
                 let found = format!("{long} of {all} edges more than ten times as long as at rest");
-                return refuse("positions.npy", format!("frame {index}"), found);
+                let file = shapes::file_of(folder, index);
+                return Err(Error::input(&file, None, format!("frame {index}"), found, METRES));
             }
         }
     }

@@ -30,6 +30,14 @@ pub(super) fn read(folder: &Path, present: &Entries, vertices: usize) -> Result<
     checked.collect::<Result<_>>().map(Some)
 }
 
+/// The file that a frame's shape stands in.
+pub(super) fn file_of(folder: &Path, frame: usize) -> PathBuf {
+    let files = folder.join("frames");
+    let is_its = |name: &String| name.split('.').next().and_then(|stem| stem.parse().ok()) == Some(frame);
+    let name = entries(&files).ok().and_then(|names| names.into_keys().find(is_its));
+    name.map_or_else(|| folder.join("positions.npy"), |name| files.join(name))
+}
+
 /// Writes `positions.npy` if any frame has a shape.
 pub(super) fn write(folder: &Path, frames: &[Frame], vertices: usize) -> Result<()> {
     let shapes: Vec<_> = frames.iter().map(|frame| frame.positions.as_ref()).collect();

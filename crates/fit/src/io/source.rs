@@ -40,7 +40,11 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
 
 /// Reads UTF-8 text; a byte order mark is dropped and every line ending becomes a line feed.
 pub(crate) fn read_text(path: &Path) -> Result<String> {
-    let mut bytes = read_bytes(path)?;
+    decoded(path, read_bytes(path)?)
+}
+
+/// The text of bytes that were read already.
+pub(crate) fn decoded(path: &Path, mut bytes: Vec<u8>) -> Result<String> {
     let refuse = |offset: usize, found: String| {
         Err(Error::input(path, line_at(&bytes, offset), "text", found, "UTF-8 (save the file as UTF-8)"))
     };

@@ -26,6 +26,7 @@ impl Table {
     /// the same; a row with more or fewer fields than the header.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
+        check_separator(path, &text)?;
         if let Some(line) = open_quote(&text) {
             return Err(Error::input(
                 path,
@@ -55,9 +56,7 @@ impl Table {
         optional: [&str; O],
     ) -> Result<([usize; R], [Option<usize>; O])> {
         let known = || required.iter().chain(&optional).copied();
-        let refuse = |found: &str, expected: String| {
-            Err(Error::input(&self.path, self.header_line, "header", shown(found), expected))
-        };
+        let refuse = |found: &str, expected: String| Err(self.bad_header("header", shown(found), expected));
         if let Some(found) = self.header.iter().find(|&found| !known().any(|name| name == found)) {
             let wanted = known().find(|name| self.column(name).is_none() && same_quantity(found, name));
             return match wanted {
@@ -125,24 +124,18 @@ impl Table {
         Error::input(&self.path, self.rows[row].0, field, found, expected)
     }
 
+    /// Bad input in the header.
+    pub fn bad_header(&self, field: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
+        Error::input(&self.path, self.header_line, field, found, expected)
+    }
+
     /// Bad input in the table as a whole.
     pub fn incomplete(&self, field: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         Error::input(&self.path, None, field, found, expected)
     }
 
     fn check_header(&self) -> Result<()> {
-        let refuse = |found: String, expected: &str| {
-            Err(Error::input(&self.path, self.header_line, "header", found, expected))
-        };
-        let only = self.header.get(0).filter(|_| self.header.len() == 1).unwrap_or_default();
-        for (separator, shown) in [(';', "semicolons (;)"), ('\t', "tabs")] {
-            if only.contains(separator) {
-                return refuse(
-                    format!("{shown} between the columns"),
-                    "commas between the columns and points in the numbers (export as comma-separated values)",
-                );
-            }
-        }
+        let refuse = |found: String, expected: &str| Err(self.bad_header("header", found, expected));
         for (column, name) in self.header.iter().enumerate() {
             if name.is_empty() {
                 return refuse(format!("no name for column {}", column + 1), "a name for every column");
@@ -171,6 +164,24 @@ impl Table {
             None => Ok(()),
         }
     }
+}
+
+/// A header of semicolons or tabs and no comma: quotes would be read wrong if it went on.
+fn check_separator(path: &Path, text: &str) -> Result<()> {
+    let Some((line, header)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
+        return Ok(());
+    };
+    // What stands in quotes is no separator.
+    let bare: String = header.split('"').step_by(2).collect();
+    for (separator, shown) in [(';', "semicolons (;)"), ('\t', "tabs")] {
+        if bare.trim().contains(separator) && !bare.contains(',') {
+            let found = format!("{shown} between the columns");
+            let expected =
+                "commas between the columns and points in the numbers (export as comma-separated values)";
+            return Err(Error::input(path, line + 1, "header", found, expected));
+        }
+    }
+    Ok(())
 }
 
 /// The records with the lines that they start in.

@@ -93,13 +93,20 @@ impl TomlFile {
         }
         let (found, expected) = message.split_once(", expected ").unwrap_or((message, "TOML"));
         let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
+        let text = self.text.lines().nth(line - 1).unwrap_or_default();
+        let (name, value) = text.split_once('=').unwrap_or(("TOML", ""));
+        let digit = |c: char| c.is_ascii_digit();
+        let comma =
+            value.trim().split_once(',').is_some_and(|(a, b)| a.ends_with(digit) && b.starts_with(digit));
         let expected = match expected {
             _ if found == "duplicate key" => "every key once",
+            // Where no key is known the text itself is no TOML.
+            _ if key.is_empty() && comma => "a number with a decimal point, not a comma",
             "f64" => "a number",
             "usize" => "a whole number from 0",
             other => other,
         };
-        let key = if key.is_empty() { "TOML".into() } else { key };
+        let key = if key.is_empty() { shown(name.trim()) } else { key };
         Error::input(&self.path, line, key, shown(&found.replace('`', "")), expected.replace('`', ""))
     }
 }

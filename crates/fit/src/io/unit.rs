@@ -1,10 +1,15 @@
 //! Names that carry their unit: `tx_m`, `areal_density_kg_m2`. A value in another unit is named, never converted.
 
 /// Unit suffixes, longest first, and their names.
-const UNITS: [(&str, &str); 25] = [
+const UNITS: [(&str, &str); 30] = [
+    ("_n_per_m", "newtons per metre"),
+    ("_per_m", "per metre"),
+    ("_n_m", "newton metres"),
+    ("_kg_m3", "kilograms per cubic metre"),
     ("_g_m2", "grams per square metre"),
     ("_kg_m2", "kilograms per square metre"),
     ("_m_s2", "metres per second squared"),
+    ("_m_s", "metres per second"),
     ("_mm", "millimetres"),
     ("_cm", "centimetres"),
     ("_um", "micrometres"),

@@ -1,11 +1,12 @@
 //! A material's TOML file, as a person writes it.
 
 use super::Material;
+use super::points::Points as ControlPoints;
 use crate::curve_file::CurveFile;
 use crate::error::{Error, Result};
 use crate::io::TomlFile;
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
-use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, de};
@@ -66,18 +67,12 @@ impl HandWritten {
                 let table = path.parent().unwrap_or(Path::new("")).join(table);
                 return Ok((component, CurveFile::read(&table)?.curve(component, model, negative)?));
             }
-            let (strains, stiffnesses) = points.values(model, component, file)?;
-            let key = format!("curves.{component}");
-            let curve = StiffnessCurve::new(strains, stiffnesses, negative)
-                .map_err(|error| file.invalid(&key, error.to_string(), CURVE))?;
-            Ok((component, curve))
+            Ok((component, points.curve(model, component, negative, file)?))
         });
         let curves = curves.collect::<Result<Curves>>()?;
         Ok(Material { name, areal_density: density, model, compression, curves })
     }
 }
-
-const CURVE: &str = "finite values at ascending places, the first at 0";
 
 impl Points {
     /// The file that the curve stands in, if that is how it is given.
@@ -98,8 +93,14 @@ impl Points {
         }
     }
 
-    /// Strains and stiffnesses of the model's own.
-    fn values(&self, model: Model, component: Component, file: &TomlFile) -> Result<(Vec<f64>, Vec<f64>)> {
+    /// The curve over the model's own strains.
+    fn curve(
+        &self,
+        model: Model,
+        component: Component,
+        negative: NegativeStrain,
+        file: &TomlFile,
+    ) -> Result<StiffnessCurve> {
         // Springs that bend have a strain of their own, without unit, and no curvature that would not depend on the mesh.
         let hinge = component.is_bending() && model != Model::Springs;
         let (places, values) = ((&self.strain, "strain"), (&self.stiffness_n_per_m, "stiffness_n_per_m"));
@@ -122,23 +123,20 @@ impl Points {
             return Err(file.invalid(&format!("curves.{component}"), "nothing", values.1));
         };
         let strains = match places.0 {
-            Some(strains) => strains.clone(),
-            None if stiffnesses.len() == 1 => vec![0.0],
+            Some(strains) => strains,
+            None if stiffnesses.len() == 1 => &vec![0.0],
             None => {
                 let found = format!("nothing for {} values", stiffnesses.len());
                 return Err(file.invalid(&key(values.1), found, places.1));
             }
         };
-        if strains.len() != stiffnesses.len() {
-            let found = format!("{} {}s for {} values", strains.len(), places.1, stiffnesses.len());
-            return Err(file.invalid(&key(places.1), found, "one for each"));
-        }
-        if stiffnesses.iter().any(|value| !value.is_finite()) {
-            return Err(file.invalid(&key(values.1), "a value that is not finite", "finite numbers"));
-        }
-        let scale = if hinge { HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
-        let scaled = |values: &[f64], by: f64| values.iter().map(|value| value * by).collect();
-        Ok((scaled(&strains, scale), scaled(stiffnesses, 1.0 / scale)))
+        let points = ControlPoints {
+            table: format!("curves.{component}"),
+            places: (places.1, strains),
+            values: (values.1, stiffnesses),
+            strain_per_unit: if hinge { HINGE_STRAIN_PER_CURVATURE } else { 1.0 },
+        };
+        points.curve(negative, file)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A control point in `material.json`, whose keys tell its unit.
 
+use crate::io::json_file::there;
 use cloth_sim::material::{Component, Model};
 use serde::{Deserialize, Serialize};
 
@@ -42,11 +43,11 @@ impl Unit {
 #[serde(deny_unknown_fields)]
 struct Keys {
     strain: f64,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "there", skip_serializing_if = "Option::is_none")]
     stiffness_n_per_m: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     deviation_n_per_m: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "there", skip_serializing_if = "Option::is_none")]
     stiffness_n_m: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     deviation_n_m: Option<f64>,
@@ -64,7 +65,7 @@ impl TryFrom<Keys> for ControlPoint {
             (None, None, Some(stiffness), deviation) => {
                 Ok(Self { strain, stiffness, deviation, unit: Unit::NewtonMetre })
             }
-            _ => Err("a control point needs stiffness_n_per_m or, for hinges, stiffness_n_m: one of them"),
+            _ => Err("no stiffness, or two, expected stiffness_n_per_m or, for hinges, stiffness_n_m"),
         }
     }
 }

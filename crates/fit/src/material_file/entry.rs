@@ -7,6 +7,7 @@ use crate::report::{Basis, CurveReport, SequenceReport, StageReport};
 use crate::simulation::DroppedFrame;
 use crate::simulation::Objective;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::error::Error;
 use cloth_sim::material::{Component, Model};
 use serde::{Deserialize, Serialize};
 
@@ -114,26 +115,30 @@ impl CurveEntry {
         }
     }
 
-    /// The curve of its control points.
+    /// The curve of its control points; or the control point that makes none, and why.
     pub(super) fn curve(
         &self,
         model: Model,
         component: Component,
         negative: NegativeStrain,
-    ) -> Result<StiffnessCurve, String> {
+    ) -> Result<StiffnessCurve, (usize, String)> {
         let points = &self.control_points;
-        if points.iter().any(|point| point.unit != Unit::of(model, component)) {
-            return Err(match Unit::of(model, component) {
-                Unit::NewtonPerMetre => "stiffness_n_m, where stiffness_n_per_m belongs".into(),
-                Unit::NewtonMetre => "stiffness_n_per_m, where stiffness_n_m belongs".into(),
-            });
+        if let Some(point) = points.iter().position(|point| point.unit != Unit::of(model, component)) {
+            let reason = match Unit::of(model, component) {
+                Unit::NewtonPerMetre => "stiffness_n_m, where stiffness_n_per_m belongs",
+                Unit::NewtonMetre => "stiffness_n_per_m, where stiffness_n_m belongs",
+            };
+            return Err((point, reason.into()));
         }
         StiffnessCurve::new(
             points.iter().map(|point| point.strain).collect(),
             points.iter().map(|point| point.stiffness).collect(),
             negative,
         )
-        .map_err(|error| error.to_string())
+        .map_err(|error| match error {
+            Error::Curve { point, reason } => (point, reason.into()),
+            other => (0, other.to_string()),
+        })
     }
 }
 

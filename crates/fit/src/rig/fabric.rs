@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::io::TomlFile;
+use crate::material::points::Points;
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -125,6 +126,14 @@ impl KnownCurves {
 }
 
 impl KnownFabric {
+    /// Reads a fabric's file.
+    ///
+    /// # Errors
+    /// As [`KnownFabric::parse`]; a file that cannot be read.
+    pub fn read(path: &Path) -> Result<Self> {
+        Self::of(&TomlFile::read(path)?)
+    }
+
     /// Reads a fabric from the text of its file.
     ///
     /// # Errors
@@ -196,8 +205,22 @@ impl KnownFabric {
             ("sample_scatter", self.sample_scatter, 1.0),
         ] {
             if !(value > 0.0 && value <= most) {
-                return Err(file.invalid(key, value.to_string(), format!("above 0 and at most {most}")));
+                let metres = if key.ends_with("_m") { " m (millimetres?)" } else { "" };
+                let expected = format!("above 0 and at most {most}{metres}");
+                return Err(file.invalid(key, value.to_string(), expected));
             }
+        }
+        let points = |component: Component, places, values, strain_per_unit| {
+            let negative = self.model.negative_strain(component, Compression::ZeroStrain);
+            let table = format!("curves.{component}");
+            Points { table, places, values, strain_per_unit }.curve(negative, file).map(|_| ())
+        };
+        for (component, MembranePoints { strain, stiffness_n_per_m }) in self.curves.membrane() {
+            points(component, ("strain", strain), ("stiffness_n_per_m", stiffness_n_per_m), 1.0)?;
+        }
+        for (component, BendingPoints { curvature_per_m, rigidity_n_m }) in self.curves.bending() {
+            let places = ("curvature_per_m", &curvature_per_m[..]);
+            points(component, places, ("rigidity_n_m", rigidity_n_m), HINGE_STRAIN_PER_CURVATURE)?;
         }
         Ok(())
     }

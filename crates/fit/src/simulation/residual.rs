@@ -174,9 +174,22 @@ impl Residuals for Simulation<'_> {
         self.curve = curve;
         Ok(Evaluation::Values {
             residual: DVector::from_vec(residual),
-            jacobian: Some(DMatrix::from_row_slice(rows, point.len(), &derivatives)),
+            jacobian: Some(without_rounding(DMatrix::from_row_slice(rows, point.len(), &derivatives))),
         })
     }
+}
+
+/// Columns up to this share of the longest are rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// A Jacobian by control values in which those that no frame sees have columns of zeros. What is left of such a column by
+/// rounding would count as seen, since what is solved scales columns to one length; but control values have one unit, and
+/// what a frame says of them comes through the same equilibrium.
+pub(crate) fn without_rounding(mut jacobian: DMatrix<f64>) -> DMatrix<f64> {
+    let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+    let rounding = jacobian.column_iter_mut().filter(|column| column.norm() <= ROUNDING * longest);
+    rounding.for_each(|mut column| column.fill(0.0));
+    jacobian
 }
 
 /// The free coordinates of a frame that were seen: their unknown, and their index.
@@ -199,5 +212,18 @@ fn measured(replica: &Replica, frame: &ReplicaFrame, objective: Objective) -> Ve
             seen_unknowns(replica, frame).map(|(_, coordinate)| observed[coordinate]).collect()
         }
         (Objective::Positions, None) => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_of_a_column_by_rounding_is_nothing() {
+        let jacobian = DMatrix::from_row_slice(2, 3, &[1.0, 1e-16, 1e-9, 2.0, -2e-16, 0.0]);
+        let expected = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, 1e-9, 2.0, 0.0, 0.0]);
+        assert_eq!(without_rounding(jacobian), expected);
+        assert_eq!(without_rounding(DMatrix::zeros(0, 2)), DMatrix::zeros(0, 2));
     }
 }

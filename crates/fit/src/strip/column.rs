@@ -77,7 +77,7 @@ impl Series {
         let list: Vec<_> =
             UNITS.iter().filter(|unit| unit.quantity == quantity).map(|unit| unit.name).collect();
         let list = list.join(", ");
-        let refuse = |found: String, expected: String| Err(table.incomplete(name, found, expected));
+        let refuse = |found: String, expected: String| Err(table.bad_header(name, found, expected));
         let said = said(name);
         let asked = match &column.unit {
             Some(text) => match named(text) {
@@ -113,7 +113,7 @@ impl Series {
 /// Where a column is.
 pub(super) fn place(table: &Table, name: &str) -> Result<usize> {
     table.column(name).ok_or_else(|| {
-        table.incomplete(
+        table.bad_header(
             "header",
             format!("no column {name:?}"),
             "a column's name, exactly as it stands there",

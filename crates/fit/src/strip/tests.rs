@@ -155,7 +155,7 @@ fn bad_tables_are_refused() {
     check(
         "force_N",
         "force",
-        "t.csv header: found no column \"force_N\", expected a column's name, exactly as it stands there",
+        "t.csv:1 header: found no column \"force_N\", expected a column's name, exactly as it stands there",
     );
     check("0.084,", "nan,", "t.csv:3 clamp_distance_m: found nan, expected a finite number");
     check(",0.084", ",", "t.csv:3 clamp_distance_m: found nothing, expected a number");
@@ -194,34 +194,34 @@ fn a_unit_is_never_guessed() {
         "d_m,force",
         m(),
         "force",
-        "t.csv force: found no unit, expected one of N, kN, cN, mN, gf, kgf, lbf, \
+        "t.csv:1 force: found no unit, expected one of N, kN, cN, mN, gf, kgf, lbf, \
          in its name as force [UNIT] or asked for as force:UNIT",
     );
     check(
         "strain_1,f_N",
         Extension::Strain("strain_1".into()),
         "f_N",
-        "t.csv strain_1: found no unit, expected one of 1, %, in its name as strain_1 [UNIT] or asked for as strain_1:UNIT",
+        "t.csv:1 strain_1: found no unit, expected one of 1, %, in its name as strain_1 [UNIT] or asked for as strain_1:UNIT",
     );
-    check("d_m,f_N", m(), "f_N:kN", "t.csv f_N: found N in its name and kN asked for, expected one unit");
+    check("d_m,f_N", m(), "f_N:kN", "t.csv:1 f_N: found N in its name and kN asked for, expected one unit");
     check(
         "d_m,f_N",
         m(),
         "f_N:lb",
-        "t.csv f_N: found the unit \"lb\" asked for, expected one of N, kN, cN, mN, gf, kgf, lbf",
+        "t.csv:1 f_N: found the unit \"lb\" asked for, expected one of N, kN, cN, mN, gf, kgf, lbf",
     );
     check(
         "d_m,f_N",
         Extension::Displacement("f_N".into()),
         "d_m",
-        "t.csv f_N: found the unit N, expected one of m, mm, cm, in",
+        "t.csv:1 f_N: found the unit N, expected one of m, mm, cm, in",
     );
     // Mega is not milli.
     check(
         "d_m,f_MN",
         m(),
         "f_MN",
-        "t.csv f_MN: found no unit, expected one of N, kN, cN, mN, gf, kgf, lbf, \
+        "t.csv:1 f_MN: found no unit, expected one of N, kN, cN, mN, gf, kgf, lbf, \
          in its name as f_MN [UNIT] or asked for as f_MN:UNIT",
     );
 }
@@ -255,7 +255,7 @@ fn bad_settings_are_refused() {
     check(StripTest { branches: Some(vec![6]), rows: Some(4..=6), ..test() }, &format!("{missing}1, 2"));
     check(
         StripTest { branch_column: Some("cycle".into()), ..test() },
-        "t.csv header: found no column \"cycle\", expected a column's name, exactly as it stands there",
+        "t.csv:1 header: found no column \"cycle\", expected a column's name, exactly as it stands there",
     );
     let range = |rows, expected: &str| check(StripTest { rows: Some(rows), ..test() }, expected);
     range(0..=3, "t.csv row: found rows 0 to 3 asked for, expected rows from 1 to 8");

@@ -100,11 +100,15 @@ fn fabric_file() {
                 "breadth = 100",
                 ":2 breadth: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes",
             ),
-            ("width_m = 0.1", "width_m = 0,1", ":2 TOML: found unexpected key or value, expected newline, #"),
+            (
+                "width_m = 0.1",
+                "width_m = 0,1",
+                ":2 width_m: found unexpected key or value, expected a number with a decimal point, not a comma",
+            ),
             (
                 "width_m = 0.1",
                 "width_m = 0.1\nwidth_m = 0.1",
-                ":3 TOML: found duplicate key, expected every key once",
+                ":3 width_m: found duplicate key, expected every key once",
             ),
             ("width_m = 0.1\n", "", " width_m: found nothing, expected a value"),
             (
@@ -217,7 +221,7 @@ fn mesh_file() {
             (
                 "v 0.1 0 ",
                 "v 0.1 nan ",
-                ":3 mesh: found vertex 1: rest position is not finite (counted from 0), expected a sheet of cloth in metres",
+                ":3 v: found nan in 1 of 3 coordinates, expected finite numbers, or nan in all three",
             ),
             ("v 0.1 0 ", "v 0.1 inf ", ":3 v: found inf, expected a finite number"),
             ("v 0.1 0 ", "v 0,1 0 ", ":3 v: found 0,1, expected a number with a decimal point, not a comma"),

@@ -1,0 +1,130 @@
+//! Small measurement sets from closed forms, of any law, size, stiffness and noise.
+
+use crate::support::full_set;
+use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
+use cloth_sim::material::Model;
+use cloth_sim::mesh::{Diagonals, Grid};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+
+/// A square in uniform strain: two bars that stretch it, or a picture frame that shears it.
+pub(crate) struct Uniform<'a> {
+    /// Stretch along weft or warp, or shear.
+    pub(crate) kind: Kind,
+    /// Whose strains the law is over. Shear: a model of triangles.
+    pub(crate) model: Model,
+    /// Side of the square, m.
+    pub(crate) side: f64,
+    /// Stress, N/m.
+    pub(crate) law: &'a dyn Fn(f64) -> f64,
+    /// Of the frames after the first, which is at rest.
+    pub(crate) strains: &'a [f64],
+    /// Standard deviation of each force component, N, told to the fit, and its seed.
+    pub(crate) noise: Option<(f64, u64)>,
+}
+
+impl Uniform<'_> {
+    /// The set.
+    pub(crate) fn measure(&self) -> MeasurementSet {
+        let side = self.side;
+        let grid = Grid { columns: 2, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
+        let bars: &[(&str, [usize; 2])] = match self.kind {
+            Kind::StretchWeft => &[("left", [0, 2]), ("right", [1, 3])],
+            Kind::StretchWarp => &[("bottom", [0, 1]), ("top", [2, 3])],
+            _ => &[("bottom", [0, 1]), ("top", [2, 3]), ("left", [0, 2]), ("right", [1, 3])],
+        };
+        let mut random = StdRng::seed_from_u64(self.noise.map_or(0, |(_, seed)| seed));
+        let deviation = self.noise.map_or(0.0, |(deviation, _)| deviation);
+        let mut noise = || deviation * Distribution::<f64>::sample(&StandardNormal, &mut random);
+        let frames = [0.0].iter().chain(self.strains).map(|&strain| {
+            let (poses, forces) =
+                if self.kind == Kind::Shear { self.sheared(strain) } else { self.stretched(strain) };
+            let noisy = forces.into_iter().map(|force| force + Vector3::from_fn(|_, _| noise()));
+            let cord = |(clip, force)| Cord { clip, force, point: None };
+            let cords = if strain == 0.0 { Vec::new() } else { noisy.enumerate().map(cord).collect() };
+            Frame { poses, cords, ..Frame::default() }
+        });
+        let clip = |(name, vertices): &(&str, [usize; 2])| Clip {
+            name: (*name).into(),
+            mass_kg: 0.0,
+            vertices: vertices.to_vec(),
+        };
+        let sequence = Sequence {
+            name: self.kind.to_string(),
+            kind: self.kind,
+            gravity: Vector3::zeros(),
+            noise: self.noise.map(|(force, _)| Noise { position_m: None, force_n: Some(force) }),
+            force_direction: None,
+            table: None,
+            frames: frames.collect(),
+            mesh: grid.mesh().unwrap(),
+            clips: bars.iter().map(clip).collect(),
+        };
+        let fabric = Fabric {
+            name: "closed form".into(),
+            width_m: side,
+            height_m: side,
+            areal_density_kg_m2: 0.2,
+            thickness_m: None,
+            source: None,
+            notes: None,
+        };
+        MeasurementSet { fabric, sequences: vec![sequence] }
+    }
+
+    /// Two bars apart: the cloth pulls with σ times the derivative of the strain by the stretch.
+    fn stretched(&self, strain: f64) -> (Vec<Isometry3<f64>>, Vec<Vector3<f64>>) {
+        let along = if self.kind == Kind::StretchWarp { Vector3::y() } else { Vector3::x() };
+        let (stretch, slope) = match self.model {
+            Model::Stvk => ((1.0 + 2.0 * strain).sqrt(), (1.0 + 2.0 * strain).sqrt()),
+            Model::SoftConstraint | Model::Springs => (1.0 + strain, 1.0),
+        };
+        let moved = Isometry3::from(Translation3::from(along * ((stretch - 1.0) * self.side)));
+        let force = along * ((self.law)(strain) * slope * self.side);
+        (vec![Isometry3::identity(), moved], vec![-force, force])
+    }
+
+    /// Weft stays, warp leans by γ, sin γ the strain: along each bar pulls σ times its length.
+    fn sheared(&self, strain: f64) -> (Vec<Isometry3<f64>>, Vec<Vector3<f64>>) {
+        let (side, angle) = (self.side, strain.asin());
+        let (weft, warp) = (Vector3::x(), Vector3::new(angle.sin(), angle.cos(), 0.0));
+        let lean = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -angle);
+        let foot = side * weft;
+        let poses = vec![
+            Isometry3::identity(),
+            Isometry3::from(Translation3::from(side * (warp - Vector3::y()))),
+            Isometry3::from_parts(Translation3::identity(), lean),
+            Isometry3::from_parts(Translation3::from(foot - lean * foot), lean),
+        ];
+        let pull = side * (self.law)(strain);
+        (poses, vec![-pull * weft, pull * weft, -pull * warp, pull * warp])
+    }
+}
+
+/// Overhangs of a heavy elastica along weft, of another size and stiffness than those of [`full_set`]: the shapes stay
+/// similar, since the density follows.
+///
+/// * `size` — its lengths, as multiples
+/// * `stiffness` — the rigidity over the size's third power, as a multiple
+pub(crate) fn overhangs(size: f64, stiffness: f64) -> MeasurementSet {
+    let MeasurementSet { mut fabric, mut sequences } = full_set();
+    sequences.retain(|sequence| sequence.kind == Kind::BendWeft);
+    fabric.width_m *= size;
+    fabric.height_m *= size;
+    fabric.areal_density_kg_m2 *= stiffness;
+    for sequence in &mut sequences {
+        sequence.mesh.positions.iter_mut().for_each(|p| *p *= size);
+        sequence.mesh.material.iter_mut().for_each(|m| *m *= size);
+        for frame in &mut sequence.frames {
+            frame.positions.iter_mut().flatten().for_each(|p| *p *= size);
+        }
+        if let Some(table) = &mut sequence.table {
+            table.edge_point_m.iter_mut().for_each(|x| *x *= size);
+        }
+        if let Some(noise) = &mut sequence.noise {
+            noise.position_m = noise.position_m.map(|noise| noise * size);
+        }
+    }
+    MeasurementSet { fabric, sequences }
+}
