@@ -37,6 +37,11 @@ pub(super) fn descend<P: Residuals>(
         if let StepStatus::Infeasible | StepStatus::NotFinite = step.status {
             break Status::StepFailed { status: step.status };
         }
+        let solved = step.status == StepStatus::Optimal;
+        // What is not solved proves no minimum.
+        if length <= options.step_tolerance && !solved {
+            break Status::StepFailed { status: step.status };
+        }
         if length <= options.step_tolerance {
             break Status::SmallStep { tolerance: options.step_tolerance };
         }
@@ -56,7 +61,7 @@ pub(super) fn descend<P: Residuals>(
             step: share * length,
             radius: f64::INFINITY,
             accepted: kept.is_some(),
-            solved: step.status == StepStatus::Optimal,
+            solved,
             rank: step.rank,
             active: step.active.clone(),
         };
@@ -68,7 +73,7 @@ pub(super) fn descend<P: Residuals>(
                     Ok(next) => next,
                     Err(reason) => break Status::Stalled { reason: Some(reason) },
                 };
-                if gain <= options.gain_tolerance || state.residual.norm_squared() == 0.0 {
+                if gain <= options.gain_tolerance && solved || state.residual.norm_squared() == 0.0 {
                     break small_gain;
                 }
                 (step, length) = whole(&state);
@@ -78,7 +83,7 @@ pub(super) fn descend<P: Residuals>(
                 share *= 0.5;
                 if share < SHORTEST {
                     break match rejected.err() {
-                        None if step.promised <= options.gain_tolerance => small_gain,
+                        None if step.promised <= options.gain_tolerance && solved => small_gain,
                         reason => Status::Stalled { reason },
                     };
                 }

@@ -210,6 +210,7 @@ fn a_start_outside_is_moved_inside() {
     let domain = Domain { rows: matrix(&[[1.0, 0.0]]), bounds: vector(&[200.0]), roughness: None };
     let mut curve = Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.0);
     let outcome = curve.fit(&[-100.0, 1e-3], &domain, &Options::default());
+    assert!(outcome.projected && outcome.iterations.iter().all(|step| step.solved));
     assert_close(&outcome.point, &[239.0, 5.5e-4], 1e-9);
     let nowhere =
         Domain { rows: matrix(&[[1.0, 0.0], [-1.0, 0.0]]), bounds: vector(&[1.0, 1.0]), roughness: None };
