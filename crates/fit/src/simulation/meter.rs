@@ -1,10 +1,11 @@
 //! What solves cost: counted, so that figures hold on any machine.
 
 use cloth_sim::equilibrium::Equilibrium;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What the solves of a stage have cost.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Equilibria sought.
     pub equilibria: usize,
