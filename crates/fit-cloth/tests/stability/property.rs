@@ -19,7 +19,8 @@ pub(crate) fn for_all<S: Strategy>(
 where
     S::Value: Debug + Clone,
 {
-    let config = Config { cases: runs, failure_persistence: None, max_shrink_iters: 500, ..Config::default() };
+    let config =
+        Config { cases: runs, failure_persistence: None, max_shrink_iters: 500, ..Config::default() };
     // A seed of its own, so that cases with the same inputs do not see the same numbers.
     let mut seed = [0u8; 32];
     let name = row.condition.bytes().chain([row.case]);
