@@ -13,7 +13,9 @@ pub mod validate;
 
 use crate::failure::Failure;
 use crate::options::{Command, Options, Telling};
+use cloth_fit::store::Recalled;
 use goal::Goal;
+use serde::Serialize;
 use serde_json::Value;
 use std::io::Write;
 
@@ -49,11 +51,40 @@ pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failur
     }
 }
 
+/// Which program this is: a journal of another one is of no use. A build in development keeps its version number, so
+/// the file's age and size count too.
+fn program() -> impl Serialize {
+    let file = std::env::current_exe().and_then(std::fs::metadata).ok();
+    let file = file.map(|file| (file.len(), file.modified().ok()));
+    (env!("CARGO_PKG_VERSION"), file)
+}
+
+/// The records of a run that was stopped; says on standard error that they are used, or not.
+fn recalled<T>(recalled: Recalled<T>, telling: Telling, name: impl Fn(&T) -> String) -> Vec<T> {
+    let Recalled { records, forgotten } = recalled;
+    if forgotten {
+        warn(
+            telling,
+            "what an interrupted run had finished was of other input or settings, and is forgotten",
+        );
+    }
+    if !records.is_empty() {
+        let names: Vec<String> = records.iter().map(name).collect();
+        note(telling, &format!("going on after what an interrupted run has finished: {}", names.join("; ")));
+    }
+    records
+}
+
 /// Says on standard error what the user should know, though the command goes on.
 fn warn(telling: Telling, warning: &str) {
+    note(telling, &format!("warning: {warning}"));
+}
+
+/// Says something on standard error.
+fn note(telling: Telling, text: &str) {
     if !telling.quiet {
         // Nobody may be there to read it.
-        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+        let _ = writeln!(std::io::stderr(), "{text}");
     }
 }
 

@@ -11,7 +11,9 @@
 
 pub mod command;
 pub mod failure;
+mod interrupt;
 pub mod options;
+pub mod output;
 pub mod plot;
 pub mod progress;
 pub mod scene;
@@ -29,6 +31,16 @@ use std::process::ExitCode;
 
 /// Runs the program on its arguments, its standard output and its standard error.
 pub fn main() -> ExitCode {
+    if let Err(error) = interrupt::install() {
+        let _ = writeln!(io::stderr(), "error: no handler for interrupts: {error}");
+        return ExitCode::from(1);
+    }
+    let code = run();
+    interrupt::settle();
+    code
+}
+
+fn run() -> ExitCode {
     let options = match Options::try_parse() {
         Ok(options) => options,
         Err(error) => {
@@ -37,17 +49,34 @@ pub fn main() -> ExitCode {
             return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }
     };
-    let mut output = io::stdout().lock();
+    let mut output = Patient(io::stdout().lock());
     let outcome = command::run(&options, &mut output);
     match outcome.and_then(|outcome| output.flush().map_err(Failure::from).map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Defective) => ExitCode::from(3),
         Ok(Outcome::NotConverged) => ExitCode::from(4),
-        // A reader that has read enough, such as `head`.
-        Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
             let _ = writeln!(io::stderr(), "error: {}", failure.in_words());
             ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Goes on where nobody reads: a reader that has read enough, such as `head`, changes neither result nor exit code.
+struct Patient<W>(W);
+
+impl<W: Write> Write for Patient<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
         }
     }
 }

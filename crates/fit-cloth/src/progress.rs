@@ -2,9 +2,27 @@
 
 use cloth_fit::simulation::Meter;
 use cloth_fit::stage::{Event, Watch};
-use indicatif::{ProgressBar, ProgressStyle};
-use std::sync::Arc;
+use indicatif::{ProgressBar, ProgressStyle, WeakProgressBar};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+
+/// The line that is shown.
+static SHOWN: Mutex<Option<WeakProgressBar>> = Mutex::new(None);
+
+/// Removes the line that is shown, if there is one.
+#[cfg(unix)]
+pub(crate) fn clear() {
+    let shown = SHOWN.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(bar) = shown.and_then(|bar| bar.upgrade()) {
+        bar.finish_and_clear();
+    }
+}
+
+/// Lets a line turn by itself.
+fn show(bar: &ProgressBar) {
+    bar.enable_steady_tick(Duration::from_millis(100));
+    *SHOWN.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.downgrade());
+}
 
 /// A line that counts steps.
 pub struct StepBar {
@@ -18,7 +36,7 @@ impl StepBar {
         let style = ProgressStyle::with_template("{spinner} {prefix}: {msg} [{elapsed}]");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
         bar.set_prefix(what.to_string());
-        bar.enable_steady_tick(Duration::from_millis(100));
+        show(&bar);
         Self { bar }
     }
 
@@ -55,7 +73,7 @@ impl Progress {
             });
         bar.set_style(style);
         bar.set_prefix(what.to_string());
-        bar.enable_steady_tick(Duration::from_millis(100));
+        show(&bar);
         Self { bar, meter }
     }
 

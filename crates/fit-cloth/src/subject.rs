@@ -1,5 +1,6 @@
 //! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
 
+use crate::output::whole;
 use clap::{Args, ValueEnum};
 use cloth_fit::check::context;
 use cloth_fit::curve_file::{CurveFile, Kind};
@@ -167,5 +168,5 @@ pub fn write(flag: &str, out: &Path, input: &Path, text: &str) -> Result<()> {
         let expected = "another file: the input is never changed";
         return Err(Error::input(input, None, flag, "the input itself", expected));
     }
-    write_file(out, text.as_bytes())
+    whole(|| write_file(out, text.as_bytes()))
 }

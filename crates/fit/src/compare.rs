@@ -29,14 +29,14 @@ use crate::prediction::predict;
 use crate::report::StageReport;
 use crate::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Curves, Model};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Tests that no stage fits.
 pub const VALIDATION: [Kind; 2] = [Kind::ComplexShear, Kind::CornerPull];
 
 /// One model in one variant.
 #[must_use]
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The model.
     pub model: Model,

@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// A fabric sample and all its measured sequences: one folder on disk.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasurementSet {
     /// The sample.
     pub fabric: Fabric,
@@ -94,7 +94,7 @@ impl std::fmt::Display for Kind {
 }
 
 /// One test: ordered frames of one specimen.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sequence {
     /// Name of its folder.
     pub name: String,
@@ -165,7 +165,7 @@ pub enum Phase {
 }
 
 /// One measured equilibrium.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Frame {
     /// Time, s.
     pub time: Option<f64>,
@@ -182,7 +182,7 @@ pub struct Frame {
 }
 
 /// One cord's force on a clip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cord {
     /// Index of the clip.
     pub clip: usize,

@@ -14,6 +14,7 @@ use crate::knowledge::Knowledge;
 use crate::report::{SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
 use cloth_sim::material::{Component, Curves, Model};
+use serde::{Deserialize, Serialize};
 
 /// A stage of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -122,6 +123,43 @@ impl FitReport {
     }
 }
 
+/// A stage that is done, and what is known after it: all that a fit needs to go on from there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finished {
+    /// The stage.
+    pub stage: StageReport,
+    /// What was given, and what this stage and those before it have observed.
+    pub knowledge: Knowledge,
+}
+
+/// Keeps a stage.
+pub type Keep<'a> = dyn FnMut(&Finished) -> Result<()> + 'a;
+
+/// What keeps the stages of a fit, should it be stopped.
+pub struct Memory<'a> {
+    /// Those of a former run on the same set with the same settings; of other models and variants too.
+    pub finished: Vec<Finished>,
+    /// Is given every stage that is fitted now; its error ends the fit.
+    pub keep: Box<Keep<'a>>,
+}
+
+impl Default for Memory<'_> {
+    /// None.
+    fn default() -> Self {
+        Self { finished: Vec::new(), keep: Box::new(|_| Ok(())) }
+    }
+}
+
+impl Memory<'_> {
+    fn recall(&self, plan: &Plan, settings: &Settings) -> Option<&Finished> {
+        let is_same = |stage: &StageReport| {
+            (&stage.components, stage.pass) == (&plan.fitted, plan.pass)
+                && (stage.model, stage.variant) == (settings.model, settings.variant)
+        };
+        self.finished.iter().find(|finished| is_same(&finished.stage))
+    }
+}
+
 /// Fits the wanted stages of a set in order, from what is known; curves that are known are not fitted.
 ///
 /// # Errors
@@ -131,6 +169,22 @@ pub fn fit(
     wanted: &[Stage],
     known: &Knowledge,
     settings: &Settings,
+    watch: &mut Watch<'_>,
+) -> Result<FitReport> {
+    resume(set, wanted, known, settings, &mut Memory::default(), watch)
+}
+
+/// The same, but stages that are finished are not fitted again: the report is that of a run that was never stopped, to the
+/// bit. A stage that failed is tried again, and fails again.
+///
+/// # Errors
+/// As [`fit`], and those of [`Memory::keep`].
+pub fn resume(
+    set: &MeasurementSet,
+    wanted: &[Stage],
+    known: &Knowledge,
+    settings: &Settings,
+    memory: &mut Memory<'_>,
     watch: &mut Watch<'_>,
 ) -> Result<FitReport> {
     let mut report = FitReport {
@@ -149,8 +203,18 @@ pub fn fit(
         if plan.pass > 1 && !report.knowledge.knows(plan.fitted[0]) {
             continue;
         }
+        if let Some(Finished { stage, knowledge }) = memory.recall(&plan, settings) {
+            report.stages.push(stage.clone());
+            report.knowledge = knowledge.clone();
+            continue;
+        }
         match stage::fit(set, &plan, &mut report.knowledge, settings, watch) {
-            Ok(stage) => report.stages.extend(stage),
+            Ok(None) => {}
+            Ok(Some(stage)) => {
+                let finished = Finished { stage, knowledge: report.knowledge.clone() };
+                (memory.keep)(&finished)?;
+                report.stages.push(finished.stage);
+            }
             Err(error) => {
                 let (components, pass, reason) = (plan.fitted, plan.pass, error.to_string());
                 report.failures.push(Failure { components, pass, reason });

@@ -127,6 +127,14 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
 /// operating system refuses.
 pub fn write_set(folder: &Path, set: &MeasurementSet) -> Result<()> {
     refuse_other_folder(folder, "fabric.toml")?;
+    replace_folder(folder, |temporary| fill_set(temporary, folder, set))
+}
+
+/// Writes a set into an empty folder that will take the place of another: errors name the latter.
+///
+/// # Errors
+/// The set is one that no folder can hold, or could not be read back; the operating system refuses.
+pub fn fill_set(temporary: &Path, folder: &Path, set: &MeasurementSet) -> Result<()> {
     if let Some(pair) = set.sequences.windows(2).find(|pair| pair[0].name >= pair[1].name) {
         return Err(Error::Setting {
             field: "sequences[].name",
@@ -134,17 +142,15 @@ pub fn write_set(folder: &Path, set: &MeasurementSet) -> Result<()> {
             expected: "every name once, in order".into(),
         });
     }
-    replace_folder(folder, |temporary| {
-        let read_back = |error| relocated(error, temporary, folder);
-        fabric::write(&temporary.join("fabric.toml"), &set.fabric)?;
-        read_fabric(temporary).map_err(read_back)?;
-        for sequence in &set.sequences {
-            let place = temporary.join(checked_name(sequence)?);
-            fs::create_dir(&place).map_err(|source| Error::io(&place, source))?;
-            fill_sequence(&place, sequence).map_err(read_back)?;
-        }
-        Ok(())
-    })
+    let read_back = |error| relocated(error, temporary, folder);
+    fabric::write(&temporary.join("fabric.toml"), &set.fabric)?;
+    read_fabric(temporary).map_err(read_back)?;
+    for sequence in &set.sequences {
+        let place = temporary.join(checked_name(sequence)?);
+        fs::create_dir(&place).map_err(|source| Error::io(&place, source))?;
+        fill_sequence(&place, sequence).map_err(read_back)?;
+    }
+    Ok(())
 }
 
 /// Adds a sequence's folder to an existing set, replacing an older sequence of that name.
@@ -272,7 +278,7 @@ fn checked_name(sequence: &Sequence) -> Result<&str> {
 }
 
 /// Writing replaces whole folders: never one that holds something else.
-fn refuse_other_folder(folder: &Path, mark: &str) -> Result<()> {
+pub(crate) fn refuse_other_folder(folder: &Path, mark: &str) -> Result<()> {
     let occupied = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if occupied && !folder.join(mark).exists() {
         let expected = format!("a new folder, an empty one, or one with {mark} to replace");

@@ -10,16 +10,17 @@
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 /// Control values of one curve within the joint covariance.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Block {
     components: Vec<Component>,
     points: usize,
 }
 
 /// Curves that are taken as known.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Knowledge {
     curves: Curves,
     blocks: Vec<Block>,

@@ -65,7 +65,7 @@ pub struct Smoothing {
 }
 
 /// Where a solution rests: on a row of A or on a side of the box.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum Bound {
     /// This row of A.
     Row(usize),
@@ -76,7 +76,7 @@ pub enum Bound {
 }
 
 /// An inequality that holds the solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Active {
     /// Which.
     pub bound: Bound,

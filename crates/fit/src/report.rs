@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// A fitted curve with its uncertainty.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurveReport {
     /// The curve, over the model's own strain.
     pub curve: StiffnessCurve,
@@ -41,7 +41,7 @@ pub struct CurveReport {
 }
 
 /// One row of a curve file, or a control point in the same terms.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Strain; bending: curvature, 1/m.
     pub strain: f64,
@@ -54,7 +54,7 @@ pub struct Sample {
 }
 
 /// How a sequence was met.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SequenceReport {
     /// Name of the sequence.
     pub name: String,
@@ -86,7 +86,7 @@ pub struct SequenceReport {
 }
 
 /// Loading against unloading.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hysteresis {
     /// Stiffness on loading over the curve's.
     pub loading: f64,
@@ -95,7 +95,7 @@ pub struct Hysteresis {
 }
 
 /// One measured force component and its simulation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ForceRow {
     /// Index of the frame in its sequence.
     pub frame: usize,
@@ -118,7 +118,7 @@ pub struct ForceRow {
 }
 
 /// A fit with a certain number of control points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Level {
     /// Control points.
     pub points: usize,
@@ -161,7 +161,7 @@ pub struct Basis {
 
 /// A stage of the fit: one curve.
 #[must_use]
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageReport {
     /// Which components were fitted: one, or weft and warp with a curve in common.
     pub components: Vec<Component>,

@@ -28,11 +28,12 @@ use cloth_sim::equilibrium::{Settings, Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use equilibria::{State, start_state};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 /// A frame that takes no part because its equilibrium was not found.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DroppedFrame {
     /// Name of the sequence.
     pub sequence: String,
@@ -43,7 +44,7 @@ pub struct DroppedFrame {
 }
 
 /// What a stage compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Objective {
     /// The measured components of clip forces, N.
     Forces,

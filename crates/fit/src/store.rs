@@ -1,7 +1,14 @@
 //! Writing that is never seen half done: into a temporary neighbour first, then renamed into place.
 //!
 //! Whatever stops the program, the path holds the old content or the new one. A hidden temporary neighbour may stay
-//! behind if the program is killed.
+//! behind if the program is killed; that of a folder is cleared by the next run that writes it.
+
+mod journal;
+mod lock;
+mod output;
+
+pub use journal::Recalled;
+pub use output::OutputFolder;
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
@@ -26,40 +33,21 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
     let target = target.unwrap_or_else(|| path.to_path_buf());
     let folder = parent(&target);
     let failed = |source| Error::io(path, source);
-    let mut temporary = temporary(0o666).tempfile_in(&folder).map_err(failed)?;
+    let mut temporary = temporary().tempfile_in(&folder).map_err(failed)?;
     temporary.write_all(contents).map_err(failed)?;
     temporary.as_file().sync_all().map_err(failed)?;
     temporary.persist(&target).map_err(|error| Error::io(path, error.error))?;
-    sync_folder(&folder)
+    sync_folder(&folder).map_err(failed)
 }
 
-/// Builds a whole folder in a temporary neighbour, then puts it in the place of the old one, which is deleted. The
-/// folders above it are made.
+/// Builds a whole folder beside the old one, then puts it in its place. The folders above it are made.
 ///
-/// If `build` fails, the temporary folder is removed and the old one stays as it was.
+/// If `build` fails, what it made is removed and the old folder stays as it was.
 ///
 /// # Errors
-/// Those of `build`; the path names something that is not a folder; the operating system refuses.
+/// Those of `build` and of [`OutputFolder::claim`]; the operating system refuses.
 pub fn replace_folder(path: &Path, build: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-    let old = existing_target(path)?;
-    if old.as_ref().is_some_and(|old| !old.is_dir()) {
-        return Err(Error::input(path, None, "folder", "something else", "a folder to replace, or nothing"));
-    }
-    let target = old.clone().unwrap_or_else(|| path.to_path_buf());
-    let folder = parent(&target);
-    let failed = |source| Error::io(path, source);
-    fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
-    let mut temporary = temporary(0o777).tempdir_in(&folder).map_err(failed)?;
-    build(temporary.path())?;
-    sync_folder(temporary.path())?;
-    if old.is_some() {
-        // The temporary name then holds the old folder, and is removed when it goes out of scope.
-        exchange(temporary.path(), &target).map_err(failed)?;
-    } else {
-        fs::rename(temporary.path(), &target).map_err(failed)?;
-        temporary.disable_cleanup(true);
-    }
-    sync_folder(&folder)
+    OutputFolder::claim(path)?.replace(build)
 }
 
 /// Where the path leads, links followed; `None` if nothing is there.
@@ -78,44 +66,18 @@ fn parent(path: &Path) -> PathBuf {
     }
 }
 
-/// Hidden, and with the usual permissions: `mode` less what the user's mask takes away.
-fn temporary(mode: u32) -> tempfile::Builder<'static, 'static> {
+/// Hidden, and with the usual permissions: those that the user's mask leaves.
+fn temporary() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".").suffix(".tmp");
     #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
-    #[cfg(not(unix))]
-    let _ = mode;
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
 }
 
 /// Makes names in a folder survive a power cut. Only Unix can open a folder for that.
-fn sync_folder(folder: &Path) -> Result<()> {
-    if cfg!(unix) {
-        File::open(folder).and_then(|file| file.sync_all()).map_err(|source| Error::io(folder, source))?;
-    }
-    Ok(())
-}
-
-/// Swaps two folders, in one step where the system can.
-fn exchange(new: &Path, old: &Path) -> std::io::Result<()> {
-    #[cfg(target_os = "linux")]
-    {
-        use rustix::fs::{CWD, RenameFlags, renameat_with};
-        use rustix::io::Errno;
-        match renameat_with(CWD, new, CWD, old, RenameFlags::EXCHANGE) {
-            // Some network file systems cannot.
-            Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => {}
-            done => return Ok(done?),
-        }
-    }
-    let aside = new.with_extension("old");
-    fs::rename(old, &aside)?;
-    if let Err(error) = fs::rename(new, old) {
-        fs::rename(&aside, old)?;
-        return Err(error);
-    }
-    fs::rename(&aside, new)
+fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 //! above σ² beyond doubt (99 %).
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
+use serde::{Deserialize, Serialize};
 
 /// Relative size of an eigenvalue of the scaled JᵀJ below which the data do not see its direction: a standard deviation a
 /// hundred thousand times that of the best seen direction is no knowledge.
@@ -20,7 +21,7 @@ const Z_975: f64 = 1.959_963_985;
 const Z_99: f64 = 2.326_347_874;
 
 /// Noise and misfit of a fit, in the units of its residuals.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
     /// Standard deviation of one measurement.
     pub noise: f64,

@@ -75,8 +75,31 @@ impl Segment {
     }
 }
 
+/// All that makes a curve: it is stored as this, and checked when it comes back.
+#[derive(Serialize, Deserialize)]
+struct ControlPoints {
+    strains: Vec<f64>,
+    stiffnesses: Vec<f64>,
+    negative: NegativeStrain,
+}
+
+impl From<StiffnessCurve> for ControlPoints {
+    fn from(StiffnessCurve { strains, stiffnesses, negative, .. }: StiffnessCurve) -> Self {
+        Self { strains, stiffnesses, negative }
+    }
+}
+
+impl TryFrom<ControlPoints> for StiffnessCurve {
+    type Error = Error;
+
+    fn try_from(points: ControlPoints) -> Result<Self> {
+        Self::new(points.strains, points.stiffnesses, points.negative)
+    }
+}
+
 /// A stiffness curve.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "ControlPoints", try_from = "ControlPoints")]
 pub struct StiffnessCurve {
     strains: Vec<f64>,
     stiffnesses: Vec<f64>,

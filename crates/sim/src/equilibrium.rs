@@ -72,7 +72,7 @@ pub enum Tolerance {
 }
 
 /// How a solve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Status {
     /// A stable equilibrium; with Levenberg–Marquardt, any equilibrium.
     Converged,

@@ -105,7 +105,7 @@ impl std::fmt::Display for Component {
 }
 
 /// Up to six curves, one a component. A component without a curve stores no energy.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Curves([Option<StiffnessCurve>; 6]);
 
 impl Curves {

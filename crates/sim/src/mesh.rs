@@ -31,7 +31,7 @@ pub enum Diagonals {
 
 /// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`. Crossed cells have
 /// their centres after all of these, row by row.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Grid {
     /// Nodes along x, at least 2.
     pub columns: usize,
@@ -131,7 +131,7 @@ pub struct Edge {
 }
 
 /// A checked triangle mesh at rest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Mesh {
     /// Rest positions, m.
     pub positions: Vec<Vector3<f64>>,

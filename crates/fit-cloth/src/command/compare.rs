@@ -1,6 +1,6 @@
 //! `fit-cloth compare`: three models in four variants on one measurement set.
 
-use super::{Outcome, fit, tell, warn};
+use super::{Outcome, fit, program, recalled, tell, warn};
 use crate::failure::Failure;
 use crate::options::{CurveFlags, SetFlags, Telling};
 use crate::progress::Progress;
@@ -8,7 +8,7 @@ use crate::text;
 use clap::Args;
 use cloth_fit::compare::{self, Comparison, Row};
 use cloth_fit::incremental::Stage;
-use cloth_fit::store::{replace_folder, write_file};
+use cloth_fit::store::write_file;
 use serde_json::Value;
 use std::io::Write;
 
@@ -18,7 +18,8 @@ Example:
   fit-cloth compare fixtures/cotton-denim --nodes 9x9 --leave-one-out --out out
 
 Writes compare.csv and compare.json, best first. What ranks: the residual on sequences of kind complex-shear and
-corner-pull, which no fit sees; else that on sequences left out one at a time; else that of the fit.";
+corner-pull, which no fit sees; else that on sequences left out one at a time; else that of the fit.
+Stopped by Ctrl-C or otherwise, the same command goes on after the models and variants that were finished.";
 
 /// `fit-cloth compare`.
 #[derive(Debug, Clone, Args)]
@@ -41,18 +42,30 @@ pub struct CompareOptions {
 /// Bad input, nothing that any model can fit, or an output folder that is no former result; what the operating system
 /// refuses.
 pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
-    let (set, folder) = options.on.open("-compare")?;
+    let (set, out) = options.on.open("-compare")?;
     let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).collect();
     if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
         return Err(fit::nothing(&options.on.set, &set, &kinds));
     }
+    let contestants = compare::contestants(&options.how.settings(&options.on));
+    let key = (program(), "compare", options.leave_one_out, format!("{contestants:?}"), &set);
+    let name = |row: &Row| format!("{}, {}", row.model, row.variant);
+    let finished: Vec<Row> = recalled(out.recall(&key)?, telling, name);
     let mut rows = Vec::new();
     let mut refused = None;
-    for settings in compare::contestants(&options.how.settings(&options.on)) {
+    for settings in contestants {
+        let is_same = |row: &&Row| (row.model, row.variant) == (settings.model, settings.variant);
+        if let Some(row) = finished.iter().find(is_same) {
+            rows.push(row.clone());
+            continue;
+        }
         let name = format!("{}, {}", settings.model, settings.variant);
         let progress = Progress::new(&name, !telling.quiet);
         let row = compare::run(&set, &settings, options.leave_one_out, &mut progress.watch());
         progress.finish();
+        if let Ok(row) = &row {
+            out.keep(row)?;
+        }
         rows.push(row.unwrap_or_else(|error| {
             let row = Row::failed(&settings, &error);
             warn(telling, &format!("{name}: {error}"));
@@ -66,11 +79,11 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
     }
     let comparison = Comparison::new(rows);
     let json = comparison.to_json();
-    replace_folder(&folder, |temporary| {
+    out.replace(|temporary| {
         write_file(&temporary.join("compare.csv"), comparison.to_csv().as_bytes())?;
         write_file(&temporary.join("compare.json"), json.as_bytes())
     })?;
-    let text = format!("{}\nWritten to {}", text::comparison(&comparison), folder.display());
+    let text = format!("{}\nWritten to {}", text::comparison(&comparison), out.path().display());
     tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
     Ok(if comparison.rows.iter().all(|row| row.converged) { Outcome::Done } else { Outcome::NotConverged })
 }

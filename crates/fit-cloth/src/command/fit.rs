@@ -1,20 +1,20 @@
 //! `fit-cloth stretch | shear | bend | fit`: curves from a measurement set.
 
 use super::goal::Goal;
-use super::{Outcome, warn};
+use super::{Outcome, program, recalled, warn};
 use crate::failure::Failure;
 use crate::options::{FitFlags, Telling, refuse_within};
+use crate::output::Output;
 use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::text;
 use cloth_fit::check::refuse_unstable;
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::incremental::{self, FitReport};
+use cloth_fit::incremental::{self, Finished, FitReport, Memory};
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_result;
-use cloth_fit::store::replace_folder;
 use cloth_sim::material::Model;
 use serde_json::{Map, Value, json};
 use std::io::Write;
@@ -36,20 +36,25 @@ pub fn run(
     telling: Telling,
     output: &mut impl Write,
 ) -> Result<Outcome, Failure> {
-    let (set, folder) = flags.on.open("")?;
+    let (set, out) = flags.on.open("")?;
     let models = flags.model.models();
-    let given = flags.known.as_deref().map(|path| read_known(path, &folder, flags)).transpose()?;
+    let given = flags.known.as_deref().map(|path| read_known(path, out.path(), flags)).transpose()?;
+    let finished = recall(goal, &set, flags, given.as_ref(), &out, telling)?;
     let (mut results, mut failures) = (Vec::new(), Vec::new());
     for &model in &models {
-        match fit_model(goal, &set, flags, model, given.as_ref(), telling) {
+        let finished = finished.clone();
+        let mut memory = Memory { finished, keep: Box::new(|finished| out.keep(finished)) };
+        match fit_model(goal, &set, flags, model, given.as_ref(), &mut memory, telling) {
             Ok(fitted) => results.push(fitted),
+            // A disk that is full is so for every model.
+            Err(failure) if failure.exit_code() == 1 => return Err(failure),
             Err(failure) => failures.push((model, failure)),
         }
     }
     if results.is_empty() {
         return failures.into_iter().next().map_or(Ok(Outcome::Done), |(_, failure)| Err(failure));
     }
-    write(&folder, models.len() > 1, &results)?;
+    write(&out, models.len() > 1, &results)?;
     // All is on disk before the first word: a reader who has read enough must not cost the result.
     for (model, failure) in &failures {
         warn(telling, &format!("{model} has no result: {}", failure.in_words()));
@@ -68,7 +73,7 @@ pub fn run(
         for fitted in &results {
             tell_model(goal, &set, fitted, telling, output)?;
         }
-        writeln!(output, "Written to {}", folder.display())?;
+        writeln!(output, "Written to {}", out.path().display())?;
     }
     let converged = failures.is_empty() && results.iter().all(|fitted| fitted.report.converged());
     Ok(if converged { Outcome::Done } else { Outcome::NotConverged })
@@ -104,12 +109,31 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     Ok(file)
 }
 
+/// The stages that the same command has finished before it was stopped.
+fn recall(
+    goal: Goal,
+    set: &MeasurementSet,
+    flags: &FitFlags,
+    given: Option<&MaterialFile>,
+    out: &Output,
+    telling: Telling,
+) -> Result<Vec<Finished>, Failure> {
+    let settings: Vec<String> =
+        flags.model.models().into_iter().map(|model| format!("{:?}", flags.settings(model))).collect();
+    let key = (program(), "fit", goal.components().collect::<Vec<_>>(), goal.anew(), settings, given, set);
+    Ok(recalled(out.recall(&key)?, telling, |Finished { stage, .. }| {
+        let pass = if stage.pass > 1 { ", second pass" } else { "" };
+        format!("{} {}{pass}", stage.model, stage.name())
+    }))
+}
+
 fn fit_model(
     goal: Goal,
     set: &MeasurementSet,
     flags: &FitFlags,
     model: Model,
     given: Option<&MaterialFile>,
+    memory: &mut Memory<'_>,
     telling: Telling,
 ) -> Result<Fitted, Failure> {
     let settings = flags.settings(model);
@@ -118,7 +142,7 @@ fn fit_model(
         None => Knowledge::default(),
     };
     let progress = Progress::new(&model.to_string(), !telling.quiet);
-    let report = incremental::fit(set, goal.stages(), &known, &settings, &mut progress.watch());
+    let report = incremental::resume(set, goal.stages(), &known, &settings, memory, &mut progress.watch());
     progress.finish();
     let report = report?;
     if report.stages.is_empty() {
@@ -143,8 +167,8 @@ pub(super) fn nothing(path: &Path, set: &MeasurementSet, kinds: &[Kind]) -> Fail
     Error::input(path, None, "kind", found, expected).into()
 }
 
-fn write(folder: &Path, several: bool, results: &[Fitted]) -> Result<(), Failure> {
-    replace_folder(folder, |temporary| {
+fn write(out: &Output, several: bool, results: &[Fitted]) -> Result<(), Failure> {
+    out.replace(|temporary| {
         results.iter().try_for_each(|Fitted { report, material }| {
             let folder = match several {
                 true => temporary.join(report.model.to_string()),

@@ -36,7 +36,7 @@ Example:
   fit-cloth fit fixtures/cotton-denim --variant linear --robust --verbose --out out
 
 Fits stretch, shear and bending in this order, then shear and bending once more. What a set lacks is not fitted, and a
-warning says so.";
+warning says so. Stopped by Ctrl-C or otherwise, the same command goes on after the curves that were finished.";
 
 /// What a command is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,11 +3,12 @@
 use super::{Outcome, tell};
 use crate::failure::Failure;
 use crate::options::{Telling, parse_kind, parse_nodes};
+use crate::output::Output;
 use crate::progress::Progress;
 use clap::Args;
 use cloth_fit::error::Error;
 use cloth_fit::frame::Kind;
-use cloth_fit::io::{read_fabric, write_set};
+use cloth_fit::io::{fill_set, read_fabric};
 use cloth_fit::rig::{KINDS, KnownFabric, Rig};
 use serde_json::json;
 use std::io::Write;
@@ -99,10 +100,12 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
         ..Rig::default()
     };
     refuse_measured(&options.out)?;
+    let out = Output::claim(&options.out)?;
     let progress = Progress::new(&format!("measuring {}", fabric.name), !telling.quiet);
-    let set = rig.measure(&fabric)?;
+    let set = rig.measure(&fabric);
     progress.finish();
-    write_set(&options.out, &set)?;
+    let set = set?;
+    out.replace(|temporary| fill_set(temporary, &options.out, &set))?;
     let frames: usize = set.sequences.iter().map(|sequence| sequence.frames.len()).sum();
     let names: Vec<&str> = set.sequences.iter().map(|sequence| &sequence.name[..]).collect();
     let text = format!("{frames} frames of {} in {}", names.join(", "), options.out.display());

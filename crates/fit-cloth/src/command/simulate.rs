@@ -3,6 +3,7 @@
 use super::{Outcome, tell};
 use crate::failure::Failure;
 use crate::options::{CompressionChoice, Telling, refuse_within};
+use crate::output::Output;
 use crate::plot::write_simulation_plots;
 use crate::progress::StepBar;
 use crate::scene::Scene;
@@ -14,7 +15,6 @@ use cloth_fit::error::Error;
 use cloth_fit::io::ShapeFormat;
 use cloth_fit::material::Material;
 use cloth_fit::result::check_output;
-use cloth_fit::store::replace_folder;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -98,8 +98,9 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
         let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
         refuse_unstable(&curves.collect(), &options.material)?;
     }
+    let out = Output::claim(&folder)?;
     let simulation = options.simulate(&scene, &material, telling)?;
-    replace_folder(&folder, |temporary| {
+    out.replace(|temporary| {
         simulation::write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;
         write_simulation_plots(temporary, &scene, &simulation)
     })?;

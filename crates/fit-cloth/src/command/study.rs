@@ -3,13 +3,14 @@
 use super::{Outcome, tell};
 use crate::failure::Failure;
 use crate::options::{SetFlags, Telling, use_threads};
+use crate::output::Output;
 use crate::plot::write_study_plots;
 use crate::progress::Progress;
 use crate::study::{self, Extent, Study, Subject, Topic};
 use crate::text;
 use clap::Args;
 use cloth_fit::result::check_output;
-use cloth_fit::store::{replace_folder, write_file};
+use cloth_fit::store::write_file;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -58,32 +59,33 @@ pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) ->
     };
     let extent = Extent { topics: options.topics.clone(), published_nodes, ..extent };
     let progress = Progress::new("study", !telling.quiet);
-    let (subject, folder) = options.subject(&extent)?;
+    let (subject, out) = options.subject(&extent)?;
     let study = study::run(&subject, &extent, &progress);
     progress.finish();
     let study = study?;
-    replace_folder(&folder, |temporary| {
+    out.replace(|temporary| {
         write(temporary, &study)?;
         write_study_plots(temporary, &study)
     })?;
-    let text = format!("{}\nWritten to {}", text::study(&study), folder.display());
+    let text = format!("{}\nWritten to {}", text::study(&study), out.path().display());
     tell(telling, output, &text, &study::study_json(&study))?;
     Ok(Outcome::Done)
 }
 
 impl StudyOptions {
-    /// What is studied, once the folder to write into is known to be one that may be written.
-    fn subject(&self, extent: &Extent) -> Result<(Subject, PathBuf), Failure> {
+    /// What is studied, and the folder to write into, claimed.
+    fn subject(&self, extent: &Extent) -> Result<(Subject, Output), Failure> {
         if let Some(set) = &self.set {
             let flags =
                 SetFlags { set: set.clone(), out: self.out.clone(), nodes: None, threads: self.threads };
-            let (set, folder) = flags.open("-study")?;
-            return Ok((Subject::of_set(set)?, folder));
+            let (set, out) = flags.open("-study")?;
+            return Ok((Subject::of_set(set)?, out));
         }
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from("out/study"));
         use_threads(self.threads)?;
         check_output(&folder)?;
-        Ok((Subject::built_in(extent)?, folder))
+        let out = Output::claim(&folder)?;
+        Ok((Subject::built_in(extent)?, out))
     }
 }
 

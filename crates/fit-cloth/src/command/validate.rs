@@ -13,7 +13,6 @@ use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_validation;
 use cloth_fit::stage::Settings;
-use cloth_fit::store::replace_folder;
 use cloth_fit::validation::validate;
 use cloth_sim::material::{Component, Curves};
 use serde_json::Value;
@@ -55,8 +54,8 @@ pub struct ValidateOptions {
 /// Bad input, a set without the tests asked for, or an output folder that is no former result; what the operating system
 /// refuses.
 pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
-    let (set, folder) = options.on.open("-validation")?;
-    refuse_within("--material", &options.material, &folder)?;
+    let (set, out) = options.on.open("-validation")?;
+    refuse_within("--material", &options.material, out.path())?;
     let material = MaterialFile::read(&options.material)?;
     let curves = curves(options, &material)?;
     let kinds = options.kinds_of(&set);
@@ -68,12 +67,12 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     progress.finish();
     let validation = validation?;
     let mut json = String::new();
-    replace_folder(&folder, |temporary| {
+    out.replace(|temporary| {
         json = write_validation(temporary, &set, &material, &validation)?;
         write_validation_plots(temporary, material.model, &validation)
     })?;
     let text = text::validation(&set, &material, &validation);
-    let text = format!("{text}\nWritten to {}", folder.display());
+    let text = format!("{text}\nWritten to {}", out.path().display());
     tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
     Ok(if validation.lost().is_empty() { Outcome::Done } else { Outcome::NotConverged })
 }

@@ -2,6 +2,7 @@
 
 use super::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
 use crate::failure::Failure;
+use crate::output::Output;
 use clap::Args;
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
@@ -73,18 +74,19 @@ pub struct FitFlags {
 }
 
 impl SetFlags {
-    /// Reads the set, once the folder to write into is known to be one that may be written.
+    /// Reads the set and claims the folder to write into.
     ///
     /// * `suffix` — of that folder, if none was named: so that one command does not replace what another wrote
     ///
     /// # Errors
-    /// A bad set, or an output folder that is no former result; threads that cannot be.
-    pub fn open(&self, suffix: &str) -> Result<(MeasurementSet, PathBuf), Failure> {
+    /// A bad set, or an output folder that is no former result or that another run writes; threads that cannot be.
+    pub fn open(&self, suffix: &str) -> Result<(MeasurementSet, Output), Failure> {
         let folder = self.output_folder(suffix);
         use_threads(self.threads)?;
         check_output(&folder)?;
         self.refuse_inside(&folder)?;
-        Ok((read_set(&self.set)?, folder))
+        let set = read_set(&self.set)?;
+        Ok((set, Output::claim(&folder)?))
     }
 
     fn output_folder(&self, suffix: &str) -> PathBuf {

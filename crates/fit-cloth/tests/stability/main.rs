@@ -18,9 +18,13 @@ mod curves;
 mod derivatives;
 mod elements;
 mod equilibria;
+#[cfg(target_os = "linux")]
+mod fault;
 mod files;
 mod fits;
 mod inputs;
+#[cfg(target_os = "linux")]
+mod interruption;
 mod measured;
 mod meshes;
 mod motion;
@@ -30,6 +34,8 @@ mod solver;
 mod stiff;
 #[path = "../support/mod.rs"]
 mod support;
+#[cfg(target_os = "linux")]
+mod surroundings;
 mod table;
 mod tokens;
 
@@ -37,14 +43,15 @@ use table::{Extent, HEADER, Row, assert_green};
 
 /// A test a case, and all of them in order.
 macro_rules! cases {
-    ($($name:ident => $rows:path,)*) => {
-        $(#[test]
+    ($($(#[$only:meta])? $name:ident => $rows:path,)*) => {
+        $($(#[$only])?
+        #[test]
         fn $name() {
             assert_green(&$rows(Extent::Quick));
         })*
 
         /// The rows of every case, in order.
-        const CASES: &[(&str, fn(Extent) -> Vec<Row>)] = &[$((stringify!($name), $rows),)*];
+        const CASES: &[(&str, fn(Extent) -> Vec<Row>)] = &[$($(#[$only])? (stringify!($name), $rows),)*];
     };
 }
 
@@ -99,6 +106,12 @@ cases! {
     case_47_faces_of_obj => inputs::case_47,
     case_48_json => inputs::case_48,
     case_49_what_is_no_file => files::case_49,
+    #[cfg(target_os = "linux")] case_50_interrupted_at_any_moment => interruption::case_50,
+    #[cfg(target_os = "linux")] case_51_killed_at_every_write => interruption::case_51,
+    #[cfg(target_os = "linux")] case_52_disk_full_at_every_write => interruption::case_52,
+    #[cfg(target_os = "linux")] case_53_two_runs_on_one_folder => surroundings::case_53,
+    #[cfg(target_os = "linux")] case_54_any_number_of_threads => surroundings::case_54,
+    #[cfg(target_os = "linux")] case_55_nobody_reads_the_output => surroundings::case_55,
 }
 
 #[test]

@@ -5,10 +5,10 @@ use crate::incremental::FitReport;
 use crate::prediction::Prediction;
 use crate::report::SequenceReport;
 use nalgebra::Vector3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How far some sequences are from their measurement.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Distance {
     /// Root mean square over all measured force components, N.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -8,10 +8,10 @@ use crate::knowledge::Knowledge;
 use crate::prediction::predict;
 use crate::stage::{Settings, Watch, kinds_of};
 use cloth_sim::material::Component;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A sequence that was left out of the fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     /// Its name.
     pub sequence: String,

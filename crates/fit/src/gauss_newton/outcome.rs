@@ -3,10 +3,11 @@
 use super::region::State;
 use crate::least_squares::{Active, Status as StepStatus};
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// One tried step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Iteration {
     /// From 1.
     pub iteration: usize,

@@ -1,10 +1,11 @@
 //! What solves cost, and what helped them: counted, so that figures hold on any machine.
 
 use cloth_sim::equilibrium::{Equilibrium, Limit, Remedies};
+use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What the solves of a stage have cost.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Equilibria sought.
     pub equilibria: usize,

@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet, Sequence};
-use crate::io::{read_fabric, write_sequence, write_set};
+use crate::io::{fill_set, read_fabric, refuse_other_folder, write_sequence};
+use crate::store::OutputFolder;
 use std::path::Path;
 
 /// Two numbers that differ by less are one number written twice.
@@ -44,9 +45,15 @@ pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, repla
         return Err(Error::input(set_folder, None, "folder", "something else", "a set's folder, or nothing"));
     }
     if !fabric_file.exists() {
+        refuse_other_folder(set_folder, "fabric.toml")?;
         let fabric = new_fabric(&fabric_file, sample, sequence)?;
-        write_set(set_folder, &MeasurementSet { fabric, sequences: vec![sequence.clone()] })?;
-        return Ok(Added::NewSet);
+        let mut claimed = OutputFolder::claim(set_folder)?;
+        // Another run may have made it until just now.
+        if !fabric_file.exists() {
+            let set = MeasurementSet { fabric, sequences: vec![sequence.clone()] };
+            claimed.replace(|temporary| fill_set(temporary, set_folder, &set))?;
+            return Ok(Added::NewSet);
+        }
     }
     check_agreement(&fabric_file, sample, &read_fabric(set_folder)?)?;
     let folder = set_folder.join(&sequence.name);

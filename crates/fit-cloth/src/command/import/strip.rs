@@ -3,6 +3,7 @@
 use crate::command::{Outcome, tell};
 use crate::failure::Failure;
 use crate::options::Telling;
+use crate::output::whole;
 use clap::{Args, ValueEnum};
 use cloth_fit::error::Error;
 use cloth_fit::frame::Sequence;
@@ -133,7 +134,7 @@ pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) ->
         areal_density: options.areal_density_kg_m2,
         thickness: options.thickness_m,
     };
-    let added = add_to_set(&options.set, &sample, &sequence, options.replace)?;
+    let added = whole(|| add_to_set(&options.set, &sample, &sequence, options.replace))?;
     let rows = sequence.frames.len() - 1;
     let [strain, force] = ranges(&sequence, test.gauge);
     let done = match added {

@@ -1,0 +1,67 @@
+//! The lock on a work folder. The system gives it back when the run that holds it is gone, however it went.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Makes a work folder and locks it, for the output folder of a path.
+///
+/// # Errors
+/// Another run holds the lock; the operating system refuses.
+pub(super) fn lock(work: &Path, path: &Path) -> Result<File> {
+    let at = work.join("lock");
+    let failed = |source| Error::io(&at, source);
+    // A run that ends removes lock and folder: then once more. It cannot end a hundred times.
+    for _ in 0..100 {
+        match fs::create_dir(work) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(Error::io(work, error)),
+            _ => {}
+        }
+        let file = match File::options().create(true).truncate(false).write(true).open(&at) {
+            Err(error) if error.kind() == ErrorKind::NotFound => continue,
+            opened => opened.map_err(failed)?,
+        };
+        match file.try_lock() {
+            Ok(()) if is_at(&file, &at) => return Ok(file),
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => break,
+            Err(TryLockError::Error(source)) => return Err(failed(source)),
+        }
+    }
+    let expected = "one run at a time: wait until it has ended, or write to another folder";
+    Err(Error::input(path, None, "folder", "another run that writes there", expected))
+}
+
+/// True if a path still leads to an open file: the run that held a lock before may have removed it.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let place = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+        file.metadata().map(place).ok() == fs::metadata(path).map(place).ok()
+    }
+    // Elsewhere an open file cannot be removed.
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        path.exists()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lock_whose_file_was_removed_is_no_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path().join("lock");
+        let file = File::create(&at).unwrap();
+        assert!(is_at(&file, &at));
+        fs::remove_file(&at).unwrap();
+        assert!(!is_at(&file, &at));
+        File::create(&at).unwrap();
+        assert!(!is_at(&file, &at));
+    }
+}
