@@ -272,9 +272,13 @@ impl LeastSquares {
             let room = DVector::from_fn(along.nrows(), |row, _| data.slack(row, point).max(0.0));
             let level = Scaled::new(&(&matrix * &basis), &(target - &matrix * &*point), &along, &-room);
             let (held, _) = level.minimise();
-            *point += &basis * held.point.component_div(&level.norms);
+            let step = &basis * held.point.component_div(&level.norms);
+            let part = part_within(data, point, &step);
+            *point += &step * part;
             let met = level.origin.iter().zip(held.multipliers.iter());
-            leaning.extend(met.filter(|(_, multiplier)| **multiplier != 0.0).map(|((row, _), _)| *row));
+            leaning.extend(
+                met.filter(|(_, multiplier)| part == 1.0 && **multiplier != 0.0).map(|((row, _), _)| *row),
+            );
             if level.rank() == level.columns() {
                 break;
             }
@@ -282,6 +286,14 @@ impl LeastSquares {
         }
         leaning
     }
+}
+
+/// The part of a step up to the first row that it violates beyond rounding: a preference that could not be solved to the
+/// end must not cost a row.
+fn part_within(data: &Scaled, point: &DVector<f64>, step: &DVector<f64>) -> f64 {
+    let end = point + step;
+    let violated = (0..data.rows.nrows()).filter(|&row| data.violation(row, &end) > 0.1 * OPTIMAL);
+    violated.map(|row| data.slack(row, point).max(0.0) / -data.along(row, step)).fold(1.0, f64::min)
 }
 
 impl Solution {

@@ -74,7 +74,7 @@ fn no_permission() -> Row {
     let place = Place::new();
     let closed = |reader: &Reader| {
         let path = place.path().join(reader.file);
-        fs::set_permissions(&path, Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o000)).unwrap();
         path
     };
     let root = fs::read(closed(&READERS[0])).is_ok();

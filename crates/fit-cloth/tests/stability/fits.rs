@@ -114,7 +114,7 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
         let Ok(material) = MaterialFile::read(&folder.path().join("out/material.json")) else {
             return row.holds(false, || format!("{kept:05b}: {:?} {warnings}", output.status.code()));
         };
-        let complaint = Component::ALL.into_iter().find_map(|component| {
+        let complaint = Component::ALL.into_iter().find(|&component| {
             let entry = &material.curves[&component];
             let file = folder.path().join(format!("out/curves/{component}.csv")).exists();
             // A sheet bent along weft alone shows no diagonal: that, too, is a sequence that does not show it.
@@ -129,7 +129,7 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
                 true => shown(component) && file && !entry.control_points.is_empty(),
                 false => named(&warnings) && named(&told) && !file && entry.control_points.is_empty(),
             };
-            (!honest).then_some(component)
+            !honest
         });
         let holds = output.status.code() == Some(0) && complaint.is_none();
         row.holds(holds, || format!("{kept:05b}: {:?} {complaint:?} {warnings}", output.status.code()))
@@ -387,8 +387,11 @@ pub(crate) fn case_37(extent: Extent) -> Vec<Row> {
                 ),
             ] {
                 let row = Row::new(37, format!("no stress up to a strain, {kind}, {model}, {name}"));
+                // Those that do not converge take long.
+                let most = if constraints == Constraints::Stable { 300 } else { 30 };
+                let runs = extent.runs(3, most);
                 let inputs = (scales(), -3.0..-1.5, any::<u64>());
-                rows.push(for_all(row, extent.runs(4, 300), inputs, |row, (scales, noise, seed)| {
+                rows.push(for_all(row, runs, inputs, |row, (scales, noise, seed)| {
                     on_a_bound(row, kind, model, constraints, scaled(scales), 10f64.powf(noise), seed)
                 }));
             }

@@ -42,7 +42,7 @@ pub(crate) fn case_34(extent: Extent) -> Vec<Row> {
             "KKT",
             1e-8,
         );
-        rows.push(for_all(row, extent.runs(100, 10_000), any::<u64>(), |row, seed| {
+        rows.push(for_all(row, extent.runs(200, 10_000), any::<u64>(), |row, seed| {
             let problem = random_problem(seed, spread, true);
             let solution = problem.solve();
             let hidden = DMatrix::from_columns(&scaled_columns(&problem)).rank(1e-8) == solution.rank;
@@ -50,7 +50,15 @@ pub(crate) fn case_34(extent: Extent) -> Vec<Row> {
                 Status::Optimal if hidden => conditions(&problem, &solution),
                 _ => f64::NAN,
             };
-            row.measure(largest, || format!("seed {seed}: {}, rank {}", solution.status, solution.rank))
+            row.measure(largest, || {
+                format!(
+                    "seed {seed}: {}, {:?}, rank {} of {}",
+                    solution.status,
+                    solution.kkt,
+                    solution.rank,
+                    problem.jacobian.ncols()
+                )
+            })
         }));
     }
     rows
