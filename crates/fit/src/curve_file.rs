@@ -176,9 +176,8 @@ impl CurveFile {
         let stiffnesses = std::iter::once(start).chain(secants).map(|k| k / scale).collect();
         let curve = StiffnessCurve::new(strains.collect(), stiffnesses, negative).map_err(|error| {
             let row = match error {
-                cloth_sim::error::Error::Curve { point, .. } => {
-                    point.checked_sub(1).map(|point| first + point)
-                }
+                // The stiffness at zero that no row states is that of the first row above.
+                cloth_sim::error::Error::Curve { point, .. } => Some(first + point.saturating_sub(1)),
                 _ => None,
             };
             self.refuse(row, stiffness, error.to_string(), "strains apart and finite stiffnesses")

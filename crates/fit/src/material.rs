@@ -151,6 +151,15 @@ mod tests {
         refused(&with("[curves.shear]\nstiffness_n_per_m = nan\n"), 5, "finite");
         refused(&with("[curves.shear]\nstiffness_n_per_m = \"soft\"\n"), 5, "a number");
         refused(&with(SHEAR).replace("0.2", "200"), 2, "0 and at most 10");
+        refused(&with("[curves.shear]\nstrain = [0.0]\n"), 4, "found nothing, expected stiffness_n_per_m");
+        refused(
+            &with("[curves.shear]\nstiffness_n_per_m = [1, 2]\n"),
+            5,
+            "nothing for 2 values, expected strain",
+        );
+        refused(&with(SHEAR).replace("\"cloth\"", "\" \""), 1, "the material's name");
+        let error = read(&with("[curves]\n")).unwrap_err().to_string();
+        assert!(error.ends_with("curves: found nothing, expected one component's curve at least"), "{error}");
         let error = read(HEAD).unwrap_err().to_string();
         assert!(error.contains("curves"), "{error}");
     }

@@ -227,6 +227,12 @@ const CURVE: &str = "control points at ascending strains from 0, with finite sti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::Kind;
+    use crate::incremental::{self, Stage};
+    use crate::knowledge::Knowledge;
+    use crate::rig::Rig;
+    use crate::stage::Watch;
+    use cloth_sim::curve::NegativeStrain;
 
     fn entry(text: &str) -> serde_json::Result<CurveEntry> {
         serde_json::from_str(&format!(r#"{{ "observed": true, "control_points": [{text}] }}"#))
@@ -263,5 +269,99 @@ mod tests {
         let odd = cloth_sim::curve::NegativeStrain::Odd;
         assert!(hinges.curve(Model::Stvk, Component::Shear, odd).is_err());
         assert!(hinges.curve(Model::Springs, Component::BendWeft, odd).is_err());
+    }
+
+    /// Two strips of denim, made up, and their stretch curves, on coarse grids.
+    fn fitted() -> MaterialFile {
+        let text = include_str!("../../../fixtures/fabrics/cotton-denim.toml");
+        let fabric = crate::rig::KnownFabric::parse("cotton-denim.toml".as_ref(), text).unwrap();
+        let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
+        let rig = Rig { sequences, nodes: [9, 9], measured: [5, 5], frames: 6, ..Rig::default() };
+        let set = rig.measure(&fabric).unwrap();
+        let settings = Settings { nodes: Some([5, 5]), variant: Variant::Isotropic, ..Settings::default() };
+        let stages = [Stage::Stretch];
+        let report =
+            incremental::fit(&set, &stages, &Knowledge::default(), &settings, &mut Watch::default()).unwrap();
+        MaterialFile::new(&set, &settings, &report, None)
+    }
+
+    #[test]
+    fn what_a_fit_found_stands_in_its_file_and_comes_back() {
+        let mut file = fitted();
+        assert_eq!(
+            (file.schema.as_str(), file.model, file.variant),
+            (SCHEMA, Model::Stvk, Variant::Isotropic)
+        );
+        assert_eq!((file.curves.len(), file.residuals.len(), file.failures.len()), (6, 2, 0));
+        let [weft, warp] = [Component::StretchWeft, Component::StretchWarp];
+        let entry = &file.curves[&weft];
+        assert!(entry.observed && !entry.given && entry.converged == Some(true));
+        assert_eq!(entry.shared_by, [weft, warp]);
+        assert!(entry.noise_n.is_some() && entry.noise_m.is_none());
+        assert!(entry.control_points.iter().all(|point| point.unit == Unit::NewtonPerMetre));
+        assert_eq!(file.curves[&Component::Shear], CurveEntry::default());
+        let residual = &file.residuals[1];
+        assert_eq!((residual.sequence.as_str(), residual.kind), ("stretch-weft", Kind::StretchWeft));
+        assert!(residual.rms_force_n.unwrap() < residual.largest_force_n.unwrap());
+        assert!(residual.rms_position_m.is_some() && residual.dropped_frames.is_empty());
+        assert_eq!(file.provenance.nodes["stretch-warp"], [5, 5]);
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("material.json");
+        std::fs::write(&path, file.to_json()).unwrap();
+        assert_eq!(MaterialFile::read(&path).unwrap(), file);
+        let material = crate::material::Material::read(&path).unwrap();
+        assert_eq!((material.name.as_str(), material.areal_density), ("cotton-denim", 0.46));
+        assert_eq!(material.curves, file.curves().unwrap());
+
+        // Another curve: it is no longer shared, its deviations go, and what was done stands there.
+        let points = &file.curves[&weft].control_points;
+        let strains: Vec<f64> = points.iter().map(|point| point.strain).collect();
+        let stiffnesses = points.iter().map(|point| 2.0 * point.stiffness).collect();
+        let curve = StiffnessCurve::new(strains, stiffnesses, NegativeStrain::Green).unwrap();
+        let visited = file.curves[&weft].visited_strain;
+        file.set_curve(weft, &curve, "doubled");
+        let entry = &file.curves[&weft];
+        assert!(entry.shared_by.is_empty() && file.curves[&warp].shared_by.is_empty());
+        assert!(entry.control_points.iter().all(|point| point.deviation.is_none()));
+        assert_eq!(
+            (entry.visited_strain, &file.provenance.changes[..]),
+            (visited, &["stretch-weft: doubled".into()][..])
+        );
+        assert_eq!(file.curves().unwrap().get(weft).unwrap().stiffnesses(), curve.stiffnesses());
+        // With points elsewhere, what was visited no longer says anything of it.
+        file.set_curve(weft, &StiffnessCurve::constant(5.0, NegativeStrain::Green).unwrap(), "made constant");
+        assert_eq!((file.curves[&weft].visited_strain, file.provenance.changes.len()), (None, 2));
+    }
+
+    #[test]
+    fn what_is_no_material_file_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("material.json");
+        let good = fitted().to_json();
+        let refused = |old: &str, new: &str, words: &str| {
+            assert!(good.contains(old), "{old}");
+            std::fs::write(&path, good.replace(old, new)).unwrap();
+            let error = MaterialFile::read(&path).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        };
+        refused(
+            "material/1",
+            "material/9",
+            "schema: found \"fit-cloth/material/9\", expected fit-cloth/material/1",
+        );
+        refused("\"schema\"", "schema", "material.json:2 material: found ");
+        refused("\"variant\"", "\"variants\"", "unknown field `variants`");
+        refused(
+            "\"strain\": 0.0",
+            "\"strain\": 9.0",
+            "stretch-weft: found control point 0: the first strain must be zero",
+        );
+        let unit = "stiffness_n_m, where stiffness_n_per_m belongs";
+        refused("\"stiffness_n_per_m\"", "\"stiffness_n_m\"", "a control point needs stiffness_n_per_m or");
+        let mut file = fitted();
+        let points = &mut file.curves.get_mut(&Component::StretchWeft).unwrap().control_points;
+        points.iter_mut().for_each(|point| point.unit = Unit::NewtonMetre);
+        assert!(file.curves().unwrap_err().to_string().contains(unit));
     }
 }

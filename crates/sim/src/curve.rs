@@ -476,6 +476,36 @@ mod tests {
     }
 
     #[test]
+    fn the_greatest_tangent_is_a_bound_that_a_line_meets() {
+        let mut rng = StdRng::seed_from_u64(3);
+        for _ in 0..200 {
+            let curve = random_curve(&mut rng, NegativeStrain::Odd);
+            let bound = curve.greatest_tangent();
+            let tangents = (0..=500).map(|i| curve.response(f64::from(i) * 1e-3).tangent);
+            assert!(tangents.fold(f64::MIN, f64::max) <= bound * (1.0 + 1e-12));
+        }
+        assert_eq!(StiffnessCurve::constant(4.0, NegativeStrain::Odd).unwrap().greatest_tangent(), 4.0);
+    }
+
+    #[test]
+    fn a_resampled_curve_passes_the_old_one_at_its_points() {
+        let curve =
+            StiffnessCurve::new(vec![0.0, 0.1, 0.3], vec![5.0, 7.0, 1.0], NegativeStrain::Green).unwrap();
+        let again = curve.resampled(4, 0.6).unwrap();
+        assert_eq!((again.strains(), again.negative()), (&equidistant(4, 0.6)[..], NegativeStrain::Green));
+        for &strain in again.strains() {
+            assert!((again.stress(strain) - curve.stress(strain)).abs() < 1e-14);
+        }
+        assert!(curve.resampled(0, 0.6).is_err() && curve.resampled(3, 0.0).is_err());
+    }
+
+    #[test]
+    fn a_stiffness_belongs_to_every_strain() {
+        let error = StiffnessCurve::new(vec![0.0, 0.1], vec![1.0], NegativeStrain::Odd).unwrap_err();
+        assert!(matches!(error, Error::ShapeMismatch { expected: 2, found: 1, .. }), "{error}");
+    }
+
+    #[test]
     fn bad_control_points_are_named() {
         let point = |strains: &[f64], k: &[f64]| match StiffnessCurve::new(
             strains.to_vec(),

@@ -68,6 +68,11 @@ fn what_is_wrong_is_named_by_its_line() {
         ("0,0", "found no row above zero"),
         ("-0.1,-1", "found no row above zero"),
         ("0,0\n1e-320,1\n1,1", ":3 strain: found"),
+        ("0,0\n1e-5,1e308\n1,1", ":3 stiffness_n_per_m: found control point 0: its stiffness is not finite"),
+        (
+            "0,0\n1e-6,1\n2e-6,1e305",
+            ":4 stiffness_n_per_m: found control point 2: its stiffness is not finite",
+        ),
         ("", "found nothing below the header"),
     ] {
         let error = weft(&format!("strain,stress_n_per_m\n{rows}\n")).unwrap_err().to_string();
@@ -95,4 +100,60 @@ fn a_table_comes_back_from_its_curve() {
         assert!(close(&again.stresses, &file.stresses));
         assert!(close(again.stiffnesses.as_ref().unwrap(), file.stiffnesses.as_ref().unwrap()));
     }
+}
+
+#[test]
+fn in_compression_without_stress_rows_below_zero_must_have_none() {
+    let slack = |low| {
+        let text = format!("strain,stress_n_per_m\n-0.1,{low}\n0,0\n0.1,12\n");
+        read(&text)?.curve(Component::StretchWeft, Model::Stvk, NegativeStrain::Slack)
+    };
+    assert!(slack("0").is_ok());
+    let error = slack("-1").unwrap_err().to_string();
+    assert!(error.contains(":2 stress_n_per_m: found -1 at -0.1, expected 0.000000"), "{error}");
+    assert!(error.contains("no stress in compression"), "{error}");
+}
+
+const BANDED: &str = "strain,stiffness_n_per_m,stress_n_per_m,stress_low_n_per_m,stress_high_n_per_m\n\
+                      -0.25,120,-30,-31,-29\n-0,90,-0,0,0\n0.25,120,30,29,31\n0.5,100,50,48,51\n";
+
+#[test]
+fn scaling_takes_stiffnesses_and_bands_along() {
+    let file = read(BANDED).unwrap();
+    let scaled = file.scaled(2.0, 3.0);
+    assert_eq!(scaled.strains, [-0.5, 0.0, 0.5, 1.0]);
+    assert_eq!(scaled.stiffnesses, Some(vec![180.0, 135.0, 180.0, 150.0]));
+    assert_eq!(scaled.stresses, [-90.0, 0.0, 90.0, 150.0]);
+    assert_eq!(scaled.band[1], Some(vec![-87.0, 0.0, 93.0, 153.0]));
+    let [curve, wider] =
+        [&file, &scaled].map(|f| f.curve(Component::Shear, Model::Stvk, NegativeStrain::Odd).unwrap());
+    for strain in [0.1, 0.3, 0.7] {
+        assert!((wider.stress(2.0 * strain) - 3.0 * curve.stress(strain)).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn another_curve_on_the_same_rows_keeps_the_width_of_the_band() {
+    let file = read(BANDED).unwrap();
+    let line = StiffnessCurve::new(vec![0.0, 0.5], vec![80.0, 80.0], NegativeStrain::Odd).unwrap();
+    let again = file.with_curve(&line);
+    assert_eq!(again.stresses, [-20.0, 0.0, 20.0, 40.0]);
+    assert_eq!(again.stiffnesses, Some(vec![80.0; 4]));
+    assert_eq!(again.band, [Some(vec![-21.0, 0.0, 19.0, 38.0]), Some(vec![-19.0, 0.0, 21.0, 41.0])]);
+}
+
+#[test]
+fn control_points_of_another_curve_become_rows_above_those_below_zero() {
+    let file = read(BANDED).unwrap();
+    assert!(file.is_two_sided() && !read("strain,stress_n_per_m\n0,0\n1,1\n").unwrap().is_two_sided());
+    let line = StiffnessCurve::new(vec![0.0, 1.0], vec![80.0, 80.0], NegativeStrain::Odd).unwrap();
+    let rows = file.with_points(&line);
+    assert_eq!((rows.strains, rows.stresses), (vec![-0.25, 0.0, 1.0], vec![-20.0, 0.0, 80.0]));
+    assert_eq!(rows.band, [None, None]);
+    let text = "curvature_per_m,moment_n\n0,0\n10,2e-4\n";
+    let hinges = StiffnessCurve::new(vec![0.0, 60.0], vec![1e-5, 1e-5], NegativeStrain::Odd).unwrap();
+    let rows = read(text).unwrap().with_points(&hinges);
+    assert_eq!(rows.strains, [0.0, 20.0]);
+    assert!((rows.stresses[1] - 6e-4).abs() < 1e-18 && (rows.stiffnesses.unwrap()[1] - 3e-5).abs() < 1e-18);
+    assert_eq!(file.strain_per_unit(), 1.0);
 }

@@ -147,6 +147,19 @@ fn what_cannot_be_read_is_not_written() {
         &|s| s.frames[1].cords[0].force.x = f64::NAN,
         "set/stretch-weft/forces.csv:2 fx_n: found NaN, expected a finite number",
     );
+    check(
+        &|s| s.frames[1].cords[0].clip = 2,
+        "frames[].cords[].clip: found 2, expected less than 2, the number of clips",
+    );
+    check(
+        &|s| s.frames[0].positions.as_mut().unwrap().truncate(3),
+        "frames[].positions: found 3, expected 4, one for every vertex",
+    );
+    let twice = MeasurementSet { sequences: vec![stretch(), bend()], ..set() };
+    assert_eq!(
+        write_set(&place, &twice).unwrap_err().to_string(),
+        "sequences[].name: found stretch-weft before bend, expected every name once, in order"
+    );
     let other = folder.path().join("home");
     fs::create_dir(&other).unwrap();
     fs::write(other.join("thesis.txt"), "all of it").unwrap();

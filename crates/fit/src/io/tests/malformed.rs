@@ -1,5 +1,7 @@
 //! Every defect of a file with the whole message that it ends in.
 
+mod absent;
+
 use super::*;
 use std::path::PathBuf;
 use std::sync::LazyLock;

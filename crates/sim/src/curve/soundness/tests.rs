@@ -108,3 +108,42 @@ fn intervals_and_extremes_are_those_of_many_samples() {
     }
     assert!(defective > 200, "{defective}");
 }
+
+#[test]
+fn a_finding_says_what_and_where_and_what_it_would_do() {
+    let said = |kind, strains, value, limit| {
+        let finding = Finding { kind, strains, value, limit };
+        (format!("{}: {finding}", finding.severity()), finding.consequence())
+    };
+    for (kind, strains, value, limit, words, does) in [
+        (
+            Kind::NegativeStiffness,
+            [0.0, 0.25],
+            -5.0,
+            0.0,
+            "defect: negative-stiffness from 0.0000 to 0.2500 (-5.000e0, limit 0.000e0)",
+            "tears itself apart",
+        ),
+        (Kind::LowTangent, [0.1, 0.2], -1.0, 0.5, "defect: low-tangent from 0.1000 to 0.2000 (-1", "falls"),
+        (Kind::LowTangent, [0.1, 0.2], 0.1, 0.5, "defect: low-tangent", "hardly grows"),
+        (Kind::TangentRatio, [0.0, 0.2], 2e4, 1e4, "defect: tangent-ratio", "dictates the time step"),
+        (Kind::EndSlope, [0.2, f64::INFINITY], -1.0, 0.5, "defect: end-slope from 0.2000 on (-1", "for ever"),
+        (
+            Kind::EndSlope,
+            [0.2, f64::INFINITY],
+            0.1,
+            0.5,
+            "defect: end-slope from 0.2000 on",
+            "hardly anything",
+        ),
+        (Kind::Magnitude, [0.0, 0.2], 0.0, 0.1, "defect: magnitude", "no stiffness at all"),
+        (Kind::Magnitude, [0.0, 0.2], 0.01, 0.1, "defect: magnitude", "far too soft"),
+        (Kind::Magnitude, [0.0, 0.2], 1e7, 1e6, "defect: magnitude", "far too stiff"),
+    ] {
+        let (found, consequence) = said(kind, strains, value, limit);
+        assert!(found.starts_with(words) && consequence.contains(does), "{found}: {consequence}");
+    }
+    let (found, consequence) = said(Kind::Unvisited, [0.0, 0.02], 0.2, 0.0);
+    assert_eq!(found, "note: unvisited from 0.0000 to 0.0200");
+    assert!(consequence.contains("a guess"));
+}
