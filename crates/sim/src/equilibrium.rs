@@ -3,8 +3,8 @@
 //! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
 //! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
 //! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
-//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. Where the iterations run out,
-//! a softer membrane shows the way. A balance that is not stable is left for the lower of the two states beside it.
+//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. Where that comes to
+//! nothing, a softer or stiffer membrane shows the way. A balance that is not stable is left for the lower of the two states beside it.
 //!
 //! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
 
@@ -15,11 +15,11 @@ use crate::linear::{Factor, Linear};
 use crate::material::Curves;
 use nalgebra::Vector3;
 
+mod continuation;
 mod drive;
 mod escape;
 mod levenberg_marquardt;
 mod newton;
-mod stiffen;
 mod time_step;
 
 /// How equilibria are found.
@@ -30,7 +30,7 @@ pub struct Settings {
     /// When a state counts as balanced.
     pub tolerance: Tolerance,
     /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them, and where they run
-    /// out, starting anew with a softer membrane that is stiffened step by step is four or more.
+    /// out, starting anew from a softer or stiffer membrane is four or more.
     pub max_iterations: usize,
     /// Leave an unstable state for one of lower energy; default true.
     pub escape: bool,
@@ -220,11 +220,11 @@ impl<'a> Solver<'a> {
         let before = self.linear.factorisations();
         let mut found = self.settle(curves, x, settings);
         // Fewer iterations than that were asked for to see how far they lead.
-        if found.status == Status::IterationLimit
+        if matches!(found.status, Status::IterationLimit | Status::Stalled)
             && settings.method == Method::MixedNewton
             && settings.max_iterations > newton::NONMONOTONE_STEPS
         {
-            self.stiffen(curves, x, &start, settings, &mut found);
+            self.continue_from_others(curves, x, &start, settings, &mut found);
         }
         Equilibrium { factorisations: self.linear.factorisations() - before, ..found }
     }
