@@ -28,9 +28,9 @@ pub struct Interventions {
     /// Solves that Newton's method could not finish and Levenberg–Marquardt went on with.
     #[serde(skip_serializing_if = "is_zero")]
     pub solves_by_levenberg_marquardt: usize,
-    /// Solves whose iterations ran out, and that were begun anew with a softer membrane.
+    /// Solves that came to nothing, and were begun anew with a softer or stiffer membrane.
     #[serde(skip_serializing_if = "is_zero")]
-    pub solves_softened: usize,
+    pub solves_continued: usize,
     /// Balances that were not stable, and were left for a lower one beside them.
     #[serde(skip_serializing_if = "is_zero")]
     pub unstable_balances_left: usize,
@@ -78,7 +78,7 @@ impl From<Remedies> for Interventions {
             matrices_damped: remedies.damped,
             solves_by_levenberg_marquardt: remedies.levenberg_marquardt,
             unstable_balances_left: remedies.escapes,
-            solves_softened: remedies.softened,
+            solves_continued: remedies.continued,
             steps_halved: remedies.halved,
             time_steps_begun_anew: remedies.careful,
             ..Self::default()
@@ -131,7 +131,7 @@ impl Interventions {
             (self.matrices_clamped, "matrices clamped"),
             (self.matrices_damped, "matrices damped"),
             (self.solves_by_levenberg_marquardt, "solves ended by Levenberg-Marquardt"),
-            (self.solves_softened, "solves by way of a softer membrane"),
+            (self.solves_continued, "solves by way of a softer or stiffer membrane"),
             (self.unstable_balances_left, "unstable balances left"),
             (self.solves_begun_anew, "solves begun anew"),
             (self.solves_in_load_steps, "solves in load steps"),

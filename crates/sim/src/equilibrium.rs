@@ -3,8 +3,8 @@
 //! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
 //! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
 //! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
-//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. Where the iterations run out,
-//! a softer membrane shows the way. A balance that is not stable is left for the lower of the two states beside it.
+//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. Where that comes to
+//! nothing, a softer or stiffer membrane shows the way. A balance that is not stable is left for the lower of the two states beside it.
 //!
 //! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
 
@@ -15,12 +15,12 @@ use crate::linear::{Factor, Linear};
 use crate::material::Curves;
 use nalgebra::Vector3;
 
+mod continuation;
 mod drive;
 mod escape;
 mod levenberg_marquardt;
 mod newton;
 mod remedies;
-mod stiffen;
 mod time_step;
 
 pub use remedies::Remedies;
@@ -33,7 +33,7 @@ pub struct Settings {
     /// When a state counts as balanced.
     pub tolerance: Tolerance,
     /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them, and where they run
-    /// out, starting anew with a softer membrane that is stiffened step by step is four or more.
+    /// out, starting anew from a softer or stiffer membrane is four or more.
     pub max_iterations: usize,
     /// Leave an unstable state for one of lower energy; default true.
     pub escape: bool,
@@ -228,12 +228,12 @@ impl<'a> Solver<'a> {
         let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let mut found = self.settle(curves, x, settings);
         // Fewer iterations than that were asked for to see how far they lead.
-        if found.status == Status::IterationLimit
+        if matches!(found.status, Status::IterationLimit | Status::Stalled)
             && settings.method == Method::MixedNewton
             && settings.max_iterations > newton::NONMONOTONE_STEPS
         {
-            self.remedies.softened += 1;
-            self.stiffen(curves, x, &start, settings, &mut found);
+            self.remedies.continued += 1;
+            self.continue_from_others(curves, x, &start, settings, &mut found);
         }
         let (factorisations, remedies) = (self.linear.factorisations() - before, self.remedies - remedies);
         Equilibrium { factorisations, remedies, ..found }

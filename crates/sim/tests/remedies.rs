@@ -62,7 +62,9 @@ fn a_solve_that_newton_cannot_finish_counts() {
     let mut sample = samples::cantilever(Model::Stvk, 6, 500.0).unwrap();
     sample.curves = samples::fabric(Model::Stvk, [0.0; 3]).unwrap();
     let falling = solve(&sample, &Settings::default());
-    assert!(!falling.converged() && falling.remedies.levenberg_marquardt == 1, "{falling:?}");
+    assert!(!falling.converged() && falling.remedies.levenberg_marquardt > 0, "{falling:?}");
+    // Nor does another membrane help one that has none.
+    assert_eq!(falling.remedies.continued, 1);
 }
 
 /// 1, ½, ¼ … 1/256 of the way: nine steps that are too long.

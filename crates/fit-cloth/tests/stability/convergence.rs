@@ -107,7 +107,7 @@ fn figure(solves: &[Solve], scene: Scene) -> String {
     let axes = Axes {
         title: &title,
         x: ("stretch / bending stiffness", 0.5..2.0 * last),
-        y: ("factorisations", 0.8..40.0 * most),
+        y: ("factorisations", 0.8..400.0 * most),
     };
     log_figure(axes, |chart| {
         for (model, colour) in Model::ALL.into_iter().zip(COLOURS) {

@@ -13,6 +13,7 @@ mod balance;
 #[allow(dead_code, reason = "other figures need the rest")]
 #[path = "../../src/plot/chart.rs"]
 mod chart;
+mod collapse;
 mod convergence;
 mod curves;
 mod derivatives;
@@ -30,8 +31,10 @@ mod meshes;
 mod motion;
 mod property;
 mod readers;
+mod sheets;
 mod solver;
 mod stiff;
+mod stretched;
 #[path = "../support/mod.rs"]
 mod support;
 #[cfg(target_os = "linux")]
@@ -58,13 +61,13 @@ macro_rules! cases {
 cases! {
     case_01_negative_stiffness_between_points => curves::case_01,
     case_02_falling_tangent => curves::case_02,
-    case_03_strain_far_past_the_last_point => curves::case_03,
-    case_04_one_point_all_zero_six_decades => curves::case_04,
+    case_03_strain_far_past_the_last_point => stretched::case_03,
+    case_04_one_point_all_zero_six_decades => stretched::case_04,
     case_05_bad_knots => curves::case_05,
     case_06_strong_compression => elements::case_06,
-    case_07_no_length => elements::case_07,
-    case_08_hinge_angle => elements::case_08,
-    case_09_collapsed_wing => elements::case_09,
+    case_07_no_length => collapse::case_07,
+    case_08_hinge_angle => collapse::case_08,
+    case_09_collapsed_wing => collapse::case_09,
     case_10_slender_cells => elements::case_10,
     case_11_derivatives => derivatives::case_11,
     case_12_rigid_motion => elements::case_12,
@@ -73,8 +76,8 @@ cases! {
     case_15_three_faces_at_an_edge => meshes::case_15,
     case_16_mixed_winding => meshes::case_16,
     case_17_bad_material_coordinates => meshes::case_17,
-    case_18_millimetres => meshes::case_18,
-    case_19_parts_that_nothing_holds => meshes::case_19,
+    case_18_millimetres => sheets::case_18,
+    case_19_parts_that_nothing_holds => sheets::case_19,
     case_20_nothing_held => equilibria::case_20,
     case_21_flat_in_compression => equilibria::case_21,
     case_22_stiff_against_soft => stiff::case_22,

@@ -7,7 +7,6 @@ use crate::table::{Extent, Row};
 use cloth_sim::equilibrium::{Method, Settings, Solver};
 use cloth_sim::material::Model;
 use cloth_sim::samples::{self, Sample};
-use proptest::prelude::*;
 use std::fmt;
 
 /// A scene whose stiffness is raised.

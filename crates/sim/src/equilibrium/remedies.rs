@@ -16,8 +16,8 @@ pub struct Remedies {
     pub levenberg_marquardt: usize,
     /// Balances that were not stable, and were left for a lower one beside them.
     pub escapes: usize,
-    /// Solves whose iterations ran out, and that were begun anew with a softer membrane.
-    pub softened: usize,
+    /// Solves that came to nothing, and were begun anew with a softer or stiffer membrane.
+    pub continued: usize,
     /// Time steps that were begun anew, downhill all the way.
     pub careful: usize,
     /// Load steps that were too long, and were halved.
@@ -37,7 +37,7 @@ impl Remedies {
             damped: rule(self.damped, other.damped),
             levenberg_marquardt: rule(self.levenberg_marquardt, other.levenberg_marquardt),
             escapes: rule(self.escapes, other.escapes),
-            softened: rule(self.softened, other.softened),
+            continued: rule(self.continued, other.continued),
             careful: rule(self.careful, other.careful),
             halved: rule(self.halved, other.halved),
         }
