@@ -29,6 +29,8 @@ mod tests;
 mod toml_file;
 mod unit;
 
+pub(crate) use source::{read_text, shortened, shown};
+
 pub use obj::{YarnAxes, read_mesh};
 pub use shape_file::{ShapeFormat, write_shapes};
 pub use toml_file::TomlFile;

@@ -11,6 +11,7 @@ pub use entry::{Correlation, CurveEntry, ResidualEntry};
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
+use crate::io::{read_text, shortened, shown};
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -21,6 +22,9 @@ use std::path::Path;
 
 /// The version of the file that is written and read.
 pub const SCHEMA: &str = "fit-cloth/material/1";
+
+/// Characters of what the JSON reader says is wrong: its lists of known keys are long.
+const LONGEST_REASON: usize = 500;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -120,20 +124,16 @@ impl MaterialFile {
     /// # Errors
     /// A file that cannot be read, or is no such file, with line and field.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
+        let text = read_text(path)?;
         let refuse = |error: serde_json::Error| {
-            Error::input(
-                path,
-                error.line(),
-                "material",
-                error.to_string(),
-                "a material.json that fit-cloth wrote",
-            )
+            let line = Some(error.line()).filter(|&line| line > 0);
+            let found = shortened(&error.to_string(), LONGEST_REASON);
+            Error::input(path, line, "material", found, "a material.json that fit-cloth wrote")
         };
         // The version first: another one may well have other fields.
         let value: serde_json::Value = serde_json::from_str(&text).map_err(refuse)?;
         if value["schema"] != SCHEMA {
-            return Err(Error::input(path, None, "schema", value["schema"].to_string(), SCHEMA));
+            return Err(Error::input(path, None, "schema", shown(&value["schema"].to_string()), SCHEMA));
         }
         let file: Self = serde_json::from_str(&text).map_err(refuse)?;
         file.named_curves()
@@ -219,6 +219,29 @@ mod tests {
             assert_eq!(serde_json::to_string(&entry.control_points[0]).unwrap(), text);
             assert!(entry.curve(Model::Stvk, component, cloth_sim::curve::NegativeStrain::Odd).is_ok());
         }
+    }
+
+    #[test]
+    fn what_is_no_material_is_refused_in_one_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("material.json");
+        let refused = |bytes: &[u8], words: &str| {
+            std::fs::write(&path, bytes).unwrap();
+            let error = MaterialFile::read(&path).unwrap_err();
+            let text = error.to_string();
+            assert!(matches!(error, Error::Input { .. }), "{error:?}");
+            assert!(text.contains(words) && text.len() < 1000 && !text.contains('\n'), "{text}");
+        };
+        refused(b"{\n\"schema\": \"\xE9\"}", ":2 text: found the byte 0xE9");
+        refused(b"", "file: found an empty file");
+        refused(b"{\n[}", ":2 material: found key must be a string");
+        let long = "a\\n".repeat(1000);
+        refused(format!("{{\"schema\": \"{long}\"}}").as_bytes(), "schema: found \"a\\na\\n");
+        let unknown = format!("{{\"schema\": \"{SCHEMA}\", \"{long}\": 1}}");
+        refused(unknown.as_bytes(), ":1 material: found unknown field `a\\na\\n");
+        std::fs::remove_file(&path).unwrap();
+        let error = MaterialFile::read(&path).unwrap_err().to_string();
+        assert!(error.ends_with("file: found nothing, expected a file"), "{error}");
     }
 
     #[test]
