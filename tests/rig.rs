@@ -110,6 +110,11 @@ fn a_figure_that_cannot_be_is_named_with_its_line() {
         ("stretch-warp = 0.04", "stretch-warp = -1.0", "d.toml:21 largest_extension.stretch-warp: found -1"),
         ("sample_scatter = 0.1\n", "", "d.toml sample_scatter: found nothing"),
         ("rigidity_n_m", "rigidity", "an unknown key"),
+        (
+            "strain = [0.0, 0.025, 0.05,",
+            "strain = [0.0, 0.05, 0.025,",
+            "d.toml:31 curves.shear: found control point 2: its strain",
+        ),
     ] {
         assert!(text.contains(from), "{from}");
         let error = KnownFabric::parse(Path::new("d.toml"), &text.replace(from, to)).unwrap_err().to_string();

@@ -180,6 +180,9 @@ fn bad_scenes_are_refused_with_file_and_line() {
     bad("\"droop\"", "\"drape-coefficient\"", 6, "circle");
     bad("name", "components = [\"bend-warp\"]\nname", 1, "cloth has no curve");
     bad("nodes = [2, 5]", "nodes = [1, 5]", 8, "2 nodes");
+    bad("nodes = [2, 5]", "nodes = [4294967296, 4294967296]", 8, "at most 1000000 in all");
+    let disc = "disc = { radius_m = 0.5, rings = 4294967296 }";
+    bad("grid = { width_m = 0.25, height_m = 1.0, nodes = [2, 5] }", disc, 8, "at most 576");
     let single = format!("{SCENE}[solver]\nintegrator = \"runge-kutta\"\nnewton = \"single\"\n");
     refused(&single, CLOTH, &[], "scene.toml:16 ", "nothing uses");
     let explicit = format!("{SCENE}[solver]\nintegrator = \"runge-kutta\"\n");

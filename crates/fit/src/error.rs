@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum Error {
     /// A file does not say what it should. Shown as `file:line field: found …, expected …`.
-    #[error("{}{} {field}: found {found}, expected {expected}", path.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
+    #[error("{}{} {field}: found {found}, expected {expected}", on_one_line(path), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Input {
         /// The file or folder.
         path: PathBuf,
@@ -21,7 +21,7 @@ pub enum Error {
         expected: String,
     },
     /// The operating system refused.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", on_one_line(path))]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -60,6 +60,12 @@ pub enum Error {
 
 /// Result with the crate's [`Error`](enum@Error).
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// A path as a message shows it: a name may hold a line feed.
+fn on_one_line(path: &Path) -> String {
+    let escaped = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    path.display().to_string().chars().map(escaped).collect()
+}
 
 impl Error {
     /// Bad input in `path`.

@@ -22,13 +22,15 @@ mod ply;
 mod scale;
 mod shape_file;
 mod shapes;
-pub(crate) mod source;
+mod source;
 pub mod table;
 mod test_file;
 #[cfg(test)]
 mod tests;
 mod toml_file;
 mod unit;
+
+pub(crate) use source::{read_text, shortened, shown};
 
 pub use obj::{YarnAxes, read_mesh};
 pub use shape_file::{ShapeFormat, write_shapes};

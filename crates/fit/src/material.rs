@@ -133,6 +133,10 @@ mod tests {
         assert!(error.contains("cloth.toml:6 ") && error.contains("beside file"), "{error}");
         write("file = \"nothing.csv\"\n");
         assert!(Material::read(&path).unwrap_err().to_string().contains("nothing.csv"));
+        write("file = \"not\\nhing.csv\"\n");
+        assert!(
+            Material::read(&path).unwrap_err().to_string().contains("/not\\nhing.csv file: found nothing")
+        );
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
 use crate::io::json_file::{parse, unique};
-use crate::io::source::read_text;
+use crate::io::{read_text, shown};
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -129,7 +129,7 @@ impl MaterialFile {
         // The version first: another one may well have other fields.
         let value: serde_json::Value = parse(path, &text)?;
         if value["schema"] != SCHEMA {
-            return Err(Error::input(path, None, "schema", value["schema"].to_string(), SCHEMA));
+            return Err(Error::input(path, None, "schema", shown(&value["schema"].to_string()), SCHEMA));
         }
         let file: Self = parse(path, &text)?;
         file.named_curves().map_err(|defect| defect.at(path, &text))?;
@@ -253,6 +253,29 @@ mod tests {
             assert_eq!(serde_json::to_string(&entry.control_points[0]).unwrap(), text);
             assert!(entry.curve(Model::Stvk, component, cloth_sim::curve::NegativeStrain::Odd).is_ok());
         }
+    }
+
+    #[test]
+    fn what_is_no_material_is_refused_in_one_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("material.json");
+        let refused = |bytes: &[u8], words: &str| {
+            std::fs::write(&path, bytes).unwrap();
+            let error = MaterialFile::read(&path).unwrap_err();
+            let text = error.to_string();
+            assert!(matches!(error, Error::Input { .. }), "{error:?}");
+            assert!(text.contains(words) && text.len() < 1000 && !text.contains('\n'), "{text}");
+        };
+        refused(b"{\n\"schema\": \"\xE9\"}", ":2 text: found the byte 0xE9");
+        refused(b"", "file: found an empty file");
+        refused(b"{\n[}", ":2 material: found key must be a string");
+        let long = "a\\n".repeat(1000);
+        refused(format!("{{\"schema\": \"{long}\"}}").as_bytes(), "schema: found \"a\\na\\n");
+        let unknown = format!("{{\"schema\": \"{SCHEMA}\", \"{long}\": 1}}");
+        refused(unknown.as_bytes(), ":1 material: found unknown field `a\\na\\n");
+        std::fs::remove_file(&path).unwrap();
+        let error = MaterialFile::read(&path).unwrap_err().to_string();
+        assert!(error.ends_with("file: found nothing, expected a file"), "{error}");
     }
 
     #[test]

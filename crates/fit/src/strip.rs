@@ -27,6 +27,7 @@ pub use settings::{Direction, Extension, StripTest};
 
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Cord, Frame, Noise, Phase, Sequence};
+use crate::io::shortened;
 use crate::io::table::Table;
 use branch::{numbered, phases};
 use column::{Quantity, Series};
@@ -167,7 +168,7 @@ fn taken<'a>(table: &Table, test: &StripTest, readings: &'a [Reading]) -> Result
         Some(branch) => {
             let present: Vec<_> = seen.keys().map(usize::to_string).collect();
             let found = format!("no row of branch {branch}");
-            let expected = format!("branches that the table has: {}", present.join(", "));
+            let expected = format!("branches that the table has: {}", shortened(&present.join(", "), 300));
             Err(table.incomplete(test.branch_column.as_deref().unwrap_or(BRANCH), found, expected))
         }
         None => Ok(taken),

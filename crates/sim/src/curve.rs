@@ -105,7 +105,7 @@ pub struct StiffnessCurve {
     stiffnesses: Vec<f64>,
     negative: NegativeStrain,
     segments: Vec<Segment>,
-    /// Energy density, stress and tangent at the last control point.
+    /// Energy density, stress and tangent at the last control point; at zero, if it is the only one.
     end: (f64, Response),
 }
 
@@ -116,7 +116,8 @@ impl StiffnessCurve {
     /// * `stiffnesses` — as many, N/m (bending: N·m per the hinge's own strain)
     ///
     /// # Errors
-    /// Empty or unequal lists; values that are not finite; strains that do not ascend or do not start at zero.
+    /// Empty or unequal lists; values that are not finite, or of more than 1e50; strains that do not ascend, by 1e-50 at
+    /// least, or do not start at zero.
     pub fn new(strains: Vec<f64>, stiffnesses: Vec<f64>, negative: NegativeStrain) -> Result<Self> {
         check_strains(&strains)?;
         if stiffnesses.len() != strains.len() {
@@ -129,6 +130,9 @@ impl StiffnessCurve {
         if let Some(point) = stiffnesses.iter().position(|k| !k.is_finite()) {
             return Err(Error::Curve { point, reason: "its stiffness is not finite" });
         }
+        if let Some(point) = stiffnesses.iter().position(|k| k.abs() > LARGEST) {
+            return Err(Error::Curve { point, reason: "its stiffness is beyond 1e50" });
+        }
         let mut energy = 0.0;
         let mut segments: Vec<Segment> = Vec::with_capacity(strains.len());
         for (index, pair) in strains.windows(2).enumerate() {
@@ -139,10 +143,8 @@ impl StiffnessCurve {
             segments.push(segment);
         }
         let end = match segments.last() {
-            None => {
-                let (strain, k) = (strains[0], stiffnesses[0]);
-                (0.5 * k * strain * strain, Response { stress: k * strain, tangent: k })
-            }
+            // A line from zero on: at a far point of it small strains would be lost in the difference.
+            None => (0.0, Response { stress: 0.0, tangent: stiffnesses[0] }),
             Some(last) => {
                 let strain = strains[strains.len() - 1];
                 let (k, slope) = (stiffnesses[stiffnesses.len() - 1], last.slope(strain - last.start));
@@ -292,7 +294,7 @@ impl StiffnessCurve {
             }
             None => {
                 let Response { stress, tangent } = self.end.1;
-                let beyond = strain - self.strains[self.strains.len() - 1];
+                let beyond = strain - self.straight_from();
                 Response { stress: stress + tangent * beyond, tangent }
             }
         }
@@ -303,10 +305,15 @@ impl StiffnessCurve {
             Some(segment) => segment.energy(strain - segment.start),
             None => {
                 let (energy, Response { stress, tangent }) = self.end;
-                let beyond = strain - self.strains[self.strains.len() - 1];
+                let beyond = strain - self.straight_from();
                 energy + beyond * (stress + 0.5 * tangent * beyond)
             }
         }
+    }
+
+    /// Where the straight line begins that ends the curve.
+    fn straight_from(&self) -> f64 {
+        if self.segments.is_empty() { 0.0 } else { self.strains[self.strains.len() - 1] }
     }
 
     /// The piece that holds a strain ≥ 0; `None` beyond the last control point.
@@ -314,6 +321,11 @@ impl StiffnessCurve {
         self.segments.get(segment_at(&self.strains, strain)?)
     }
 }
+
+/// The largest strain and the largest stiffness without sign, and the least distance of two strains. Slopes are then at most
+/// 1e100 and cubic coefficients at most 1e201: energies, stresses and tangents stay finite.
+const LARGEST: f64 = 1e50;
+const LEAST_GAP: f64 = 1e-50;
 
 /// Smallest 1 + 2ε that compression is evaluated at: a collapsed triangle has 0, rounding may take it below.
 const COLLAPSED: f64 = 1e-12;
@@ -340,8 +352,17 @@ fn check_strains(strains: &[f64]) -> Result<()> {
     if let Some(point) = strains.iter().position(|strain| !strain.is_finite()) {
         return Err(Error::Curve { point, reason: "its strain is not finite" });
     }
+    if let Some(point) = strains.iter().position(|strain| *strain > LARGEST) {
+        return Err(Error::Curve { point, reason: "its strain is beyond 1e50" });
+    }
     if let Some(point) = strains.windows(2).position(|pair| pair[0] >= pair[1]) {
         return Err(Error::Curve { point: point + 1, reason: "its strain is not above the one before" });
+    }
+    if let Some(point) = strains.windows(2).position(|pair| pair[1] - pair[0] < LEAST_GAP) {
+        return Err(Error::Curve {
+            point: point + 1,
+            reason: "its strain is less than 1e-50 above the one before",
+        });
     }
     if strains[0] != 0.0 && strains.len() > 1 || strains[0] < 0.0 {
         return Err(Error::Curve { point: 0, reason: "the first strain must be zero" });
@@ -463,6 +484,9 @@ mod tests {
             assert_eq!(linear.stress(strain), 4.0 * strain);
             assert_eq!(linear.energy(strain), 2.0 * strain * strain);
         }
+        // Wherever its one point stands.
+        let far = StiffnessCurve::new(vec![1e6], vec![4.0], NegativeStrain::Linear).unwrap();
+        assert_eq!((far.stress(1e-3), far.energy(1e-3)), (linear.stress(1e-3), linear.energy(1e-3)));
     }
 
     #[test]
@@ -522,5 +546,26 @@ mod tests {
         assert_eq!(point(&[0.0, f64::NAN], &[1.0; 2]), 1);
         assert_eq!(point(&[0.1, 0.2], &[1.0; 2]), 0);
         assert_eq!(point(&[0.0, 0.2], &[1.0, f64::INFINITY]), 1);
+        // Slopes and energies of these would be beyond all numbers.
+        assert_eq!(point(&[0.0, 1e-60], &[1.0; 2]), 1);
+        assert_eq!(point(&[0.0, 1e60], &[1.0; 2]), 1);
+        assert_eq!(point(&[0.0, 0.2], &[-1e60, 1.0]), 0);
+    }
+
+    #[test]
+    fn the_farthest_control_points_allowed_keep_everything_finite() {
+        for strains in [[0.0, 1e-50, 1e50], [0.0, 1e-50, 2e-50], [0.0, 5e49, 1e50]] {
+            for k in [[1e50, -1e50, 1e50], [-1e50, 1e50, 1e50], [0.0, 1e50, -1e50]] {
+                for negative in [NegativeStrain::Odd, NegativeStrain::Green, NegativeStrain::Linear] {
+                    let curve = StiffnessCurve::new(strains.to_vec(), k.to_vec(), negative).unwrap();
+                    for strain in strains.iter().flat_map(|e| [-e, 0.5 * e, *e, 2.0 * e]) {
+                        let Response { stress, tangent } = curve.response(strain);
+                        assert!(
+                            [stress, tangent, curve.energy(strain)].iter().all(|value| value.is_finite())
+                        );
+                    }
+                }
+            }
+        }
     }
 }

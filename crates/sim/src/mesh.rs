@@ -279,11 +279,12 @@ impl Mesh {
         for Edge { ends: [from, to], .. } in self.edges()? {
             let rest = (self.positions[to] - self.positions[from]).norm();
             let material = (self.material[to] - self.material[from]).norm();
-            if (material - rest).abs() > 0.01 * rest {
+            // Written so that a NaN, of lengths beyond all numbers, is caught too.
+            if !((material - rest).abs() <= 0.01 * rest) {
                 return Err(Error::EdgeLength { edge: [from, to], rest, material });
             }
         }
-        match (0..self.triangles.len()).find(|&triangle| self.double_area(triangle) <= 0.0) {
+        match (0..self.triangles.len()).find(|&triangle| !(self.double_area(triangle) > 0.0)) {
             Some(triangle) => Err(Error::MirroredMaterial { triangle }),
             None => Ok(()),
         }

@@ -11,6 +11,12 @@ use std::path::Path;
 /// Two axes count as perpendicular up to this cosine.
 const PERPENDICULAR: f64 = 1e-6;
 
+/// More than any solver here takes in a day; a slip of the finger would otherwise take all memory.
+const MOST_NODES: usize = 1_000_000;
+
+/// Of a disc with almost as many nodes, 1 + 3·rings·(rings + 1).
+const MOST_RINGS: usize = 576;
+
 /// The mesh that the file describes.
 pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<Mesh> {
     let refuse = |key: &str, error: cloth_sim::error::Error| {
@@ -18,7 +24,9 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
     };
     check_length(file, "sheet.grid.nodes", 2)?;
     let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
-        (Some(grid), None, None) => of_grid(grid).mesh().map_err(|error| refuse("sheet.grid", error))?,
+        (Some(grid), None, None) => {
+            of_grid(grid, file)?.mesh().map_err(|error| refuse("sheet.grid", error))?
+        }
         (None, Some(disc), None) => {
             of_disc(disc, file)?.mesh().map_err(|error| refuse("sheet.disc", error))?
         }
@@ -35,13 +43,20 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
     place(flat, sheet, file)
 }
 
-fn of_grid(grid: &GridFile) -> Grid {
+fn of_grid(grid: &GridFile, file: &TomlFile) -> Result<Grid> {
     let GridFile { width_m: width, height_m: height, nodes: [columns, rows], diagonals } = *grid;
-    Grid { columns, rows, width, height, diagonals }
+    if columns.saturating_mul(rows) > MOST_NODES {
+        let found = format!("{columns} × {rows} nodes");
+        return Err(file.invalid("sheet.grid.nodes", found, format!("at most {MOST_NODES} in all")));
+    }
+    Ok(Grid { columns, rows, width, height, diagonals })
 }
 
 fn of_disc(disc: &DiscFile, file: &TomlFile) -> Result<Disc> {
     let DiscFile { radius_m: radius, rings, kept_ring: kept } = *disc;
+    if rings > MOST_RINGS {
+        return Err(file.invalid("sheet.disc.rings", rings.to_string(), format!("at most {MOST_RINGS}")));
+    }
     if let Some(ring) = kept.filter(|ring| !(1..=rings).contains(ring)) {
         return Err(file.invalid("sheet.disc.kept_ring", ring.to_string(), format!("1 to {rings}")));
     }

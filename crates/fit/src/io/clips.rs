@@ -1,6 +1,7 @@
 //! `clips.csv`: where every clip is in every frame.
 
 use super::names::index_of;
+use super::source::shown;
 use super::table::Table;
 use super::test_file::UNIT_LENGTH;
 use crate::error::{Error, Result};
@@ -24,7 +25,7 @@ pub(super) fn read(path: &Path, clips: &[Clip]) -> Result<Vec<Vec<Isometry3<f64>
         let quaternion = Quaternion::new(number(qw)?, number(qx)?, number(qy)?, number(qz)?);
         let pose = Isometry3::from_parts(translation, rotation(&table, row, quaternion)?);
         if poses.insert(key, pose).is_some() {
-            let found = format!("frame {} of {} twice", key.0, clips[key.1].name);
+            let found = format!("frame {} of {} twice", key.0, shown(&clips[key.1].name));
             return Err(table.invalid(row, "frame", found, "one pose for every clip and frame"));
         }
     }
@@ -34,7 +35,7 @@ pub(super) fn read(path: &Path, clips: &[Clip]) -> Result<Vec<Vec<Isometry3<f64>
         let expected = (count / clips.len(), count % clips.len());
         let complete = key.is_none() && count > 0 && expected.1 == 0;
         if key != Some(expected) && !complete {
-            let found = format!("no pose of {} in frame {}", clips[expected.1].name, expected.0);
+            let found = format!("no pose of {} in frame {}", shown(&clips[expected.1].name), expected.0);
             return Err(table.incomplete(
                 "frame",
                 found,

@@ -1,6 +1,6 @@
 //! Clips by their names in tables.
 
-use super::source::shown;
+use super::source::{shortened, shown};
 use super::table::Table;
 use crate::error::Result;
 use crate::frame::Clip;
@@ -10,7 +10,8 @@ pub(super) fn index_of(table: &Table, row: usize, column: usize, clips: &[Clip])
     let name = table.text(row, column);
     clips.iter().position(|clip| clip.name == name).ok_or_else(|| {
         let known: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();
-        table.invalid(row, "clip", shown(name), format!("a clip of test.toml: {}", known.join(", ")))
+        let known = shortened(&known.join(", "), 300);
+        table.invalid(row, "clip", shown(name), format!("a clip of test.toml: {known}"))
     })
 }
 

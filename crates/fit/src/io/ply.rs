@@ -20,7 +20,9 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
         let reason = message.lines().next().unwrap_or_default();
         let reason =
             reason.split_once(": ").filter(|_| error.line().is_some()).map_or(reason, |(_, reason)| reason);
-        let line = error.line().filter(|_| text);
+        // The reader counts one line more where the file ends within one.
+        let lines = bytes.split(|&byte| byte == b'\n').count();
+        let line = error.line().filter(|_| text).map(|line| line.min(lines));
         Error::input(path, line, "PLY", shown(reason), "a PLY file with x, y and z of every vertex")
     };
     let mut reader = Reader::new(bytes.as_slice());

@@ -98,11 +98,10 @@ fn checked(path: &Path, frame: usize, shape: Shape) -> Result<Option<Shape>> {
         let refuse = |found: String, expected: &str| {
             Err(Error::input(path, None, format!("frame {frame} vertex {vertex}"), found, expected))
         };
-        if let Some(value) = position.iter().find(|value| value.is_infinite()) {
-            return refuse(
-                value.to_string(),
-                "a finite coordinate, or NaN where the vertex was not observed",
-            );
+        // Shapes are written as float32: what that cannot hold would come back as infinite.
+        if let Some(value) = position.iter().find(|value| (**value as f32).is_infinite()) {
+            let expected = "a coordinate below 3.4e38 m, or NaN where the vertex was not observed";
+            return refuse(format!("{value:e}"), expected);
         }
         let unseen = position.iter().filter(|value| value.is_nan()).count();
         if unseen == 1 || unseen == 2 {

@@ -78,12 +78,17 @@ fn line_at(bytes: &[u8], offset: usize) -> usize {
 
 /// What stands in a file, fit for one line of a message.
 pub(crate) fn shown(text: &str) -> String {
-    const LONGEST: usize = 60;
+    shortened(text, 60)
+}
+
+/// The same, up to so many characters.
+pub(crate) fn shortened(text: &str, longest: usize) -> String {
     if text.is_empty() {
         return "nothing".into();
     }
-    let mut short: String = text.chars().take(LONGEST).flat_map(escaped).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    let mut characters = text.chars().flat_map(escaped);
+    let mut short: String = characters.by_ref().take(longest).collect();
+    if characters.next().is_some() {
         short.push('…');
     }
     short

@@ -79,6 +79,11 @@ impl Table {
         self.header.iter().position(|found| found == name)
     }
 
+    /// A column's name.
+    pub fn name(&self, column: usize) -> &str {
+        &self.header[column]
+    }
+
     /// Number of rows below the header.
     pub fn rows(&self) -> usize {
         self.rows.len()
@@ -121,7 +126,7 @@ impl Table {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> Error {
-        Error::input(&self.path, self.rows[row].0, field, found, expected)
+        Error::input(&self.path, self.rows[row].0, shown(field), found, expected)
     }
 
     /// Bad input in the header.
@@ -131,7 +136,7 @@ impl Table {
 
     /// Bad input in the table as a whole.
     pub fn incomplete(&self, field: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
-        Error::input(&self.path, None, field, found, expected)
+        Error::input(&self.path, None, shown(field), found, expected)
     }
 
     fn check_header(&self) -> Result<()> {

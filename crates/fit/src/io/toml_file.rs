@@ -76,6 +76,7 @@ impl TomlFile {
                 key = name.to_string();
             }
         });
+        let key = if key.is_empty() { key } else { shown(&key) };
         let line = self.line(span.start);
         let message = error.message().trim();
         if let Some(name) = quoted(message, "missing field ") {
@@ -84,14 +85,16 @@ impl TomlFile {
             return Error::input(&self.path, line, key, "nothing", "a value");
         }
         if let Some(name) = quoted(message, "unknown field ") {
-            let known: Vec<_> = message.split('`').skip(3).step_by(2).collect();
+            // The known keys stand after the key that was found, which may hold anything.
+            let known = message.rsplit_once(", expected ").map_or("", |(_, known)| known);
+            let known: Vec<_> = known.split('`').skip(1).step_by(2).collect();
             let expected = match known.iter().find(|known| same_quantity(name, known)) {
                 Some(known) => format!("{known} ({})", conversion(name, known)),
                 None => format!("one of {}", known.join(", ")),
             };
             return Error::input(&self.path, line, shown(name), "an unknown key", expected);
         }
-        let (found, expected) = message.split_once(", expected ").unwrap_or((message, "TOML"));
+        let (found, expected) = message.rsplit_once(", expected ").unwrap_or((message, "TOML"));
         let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
         let text = self.text.lines().nth(line - 1).unwrap_or_default();
         let (name, value) = text.split_once('=').unwrap_or(("TOML", ""));

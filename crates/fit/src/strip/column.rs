@@ -1,6 +1,7 @@
 //! A column of the machine's table and its unit, which is said or asked for but never guessed.
 
 use crate::error::Result;
+use crate::io::shown;
 use crate::io::table::Table;
 
 /// A column, and its unit if the name does not say it.
@@ -82,7 +83,12 @@ impl Series {
         let asked = match &column.unit {
             Some(text) => match named(text) {
                 Some(unit) => Some(unit),
-                None => return refuse(format!("the unit {text:?} asked for"), format!("one of {list}")),
+                None => {
+                    return refuse(
+                        format!("the unit \"{}\" asked for", shown(text)),
+                        format!("one of {list}"),
+                    );
+                }
             },
             None => None,
         };
@@ -92,6 +98,7 @@ impl Series {
                 return refuse(found, "one unit".into());
             }
             (None, None) => {
+                let name = shown(name);
                 let expected =
                     format!("one of {list}, in its name as {name} [UNIT] or asked for as {name}:UNIT");
                 return refuse("no unit".into(), expected);
@@ -106,7 +113,12 @@ impl Series {
 
     /// A row's value in SI.
     pub(super) fn value(&self, table: &Table, row: usize) -> Result<f64> {
-        table.number(row, self.place).map(|value| value * self.factor)
+        let value = self.factor * table.number(row, self.place)?;
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let found = shown(table.text(row, self.place));
+        Err(table.invalid(row, table.name(self.place), found, "a number below 1.8e308 in SI units"))
     }
 }
 
@@ -115,7 +127,7 @@ pub(super) fn place(table: &Table, name: &str) -> Result<usize> {
     table.column(name).ok_or_else(|| {
         table.bad_header(
             "header",
-            format!("no column {name:?}"),
+            format!("no column \"{}\"", shown(name)),
             "a column's name, exactly as it stands there",
         )
     })

@@ -90,6 +90,10 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
             Measure::Engineering => (elongation, nominal),
             Measure::Shear { tension } => (elongation, nominal - tension * elongation),
         };
+        if !stress.is_finite() {
+            let found = format!("{} N on {} m", force.value(&table, row)?, test.width);
+            return Err(table.invalid(row, &test.force.name, found, "a stress below 1.8e308 N/m"));
+        }
         strains.push(strain);
         stresses.push(stress);
         lines.push(table.line(row));
@@ -184,10 +188,15 @@ mod tests {
             ("0,0\n20,10\n10,5", ":4 strain: found"),
             ("0,0\n5000,10", ":3 travel_mm: found 26 times the gauge length"),
             ("0,0\n20,x", ":3 load: found x"),
+            ("0,0\n20,1e308", ":3 load: found 100000"),
         ] {
             let error = read(&format!("travel_mm,load\n{rows}\n"), &green).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         }
+        // A column's name may hold anything; the message stays one line.
+        let named = test(Extension::Displacement("a\u{14}b_mm".into()), Measure::Green);
+        let error = read("a\u{14}b_mm,load\n5000,1\n", &named).unwrap_err().to_string();
+        assert!(error.contains(":2 a\\u{14}b_mm: found 26 times"), "{error}");
         for wrong in [
             ForceTable { gauge: None, ..green.clone() },
             ForceTable { width: 50.0, ..green.clone() },

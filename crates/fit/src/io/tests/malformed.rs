@@ -113,6 +113,12 @@ fn fabric_file() {
                 ":3 width_m: found duplicate key, expected every key once",
             ),
             ("width_m = 0.1\n", "", " width_m: found nothing, expected a value"),
+            // A key may hold quotes and line feeds: the message stays one line, and lists the known keys.
+            (
+                "width_m = 0.1",
+                "\"a`\\n, expected `b\" = 1",
+                ":2 a: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes",
+            ),
             (
                 "0.46",
                 "460",
@@ -512,7 +518,7 @@ fn shapes() {
         ),
         (
             &coordinate(f32::INFINITY),
-            "bend/positions.npy frame 1 vertex 0: found inf, expected a finite coordinate, or NaN where the vertex was not observed",
+            "bend/positions.npy frame 1 vertex 0: found inf, expected a coordinate below 3.4e38 m, or NaN where the vertex was not observed",
         ),
         (
             &coordinate(f32::NAN),
@@ -556,6 +562,17 @@ fn shapes() {
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nend_header\n0\n0\n0\n0\n"),
             "corners/frames/0.ply y: found nothing, expected x, y and z of the element vertex",
+        ),
+        (
+            &ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x"),
+            "corners/frames/0.ply:4 PLY: found Unexpected end of file while reading header (missing 'end_he…, expected a PLY file with x, y and z of every vertex",
+        ),
+        (
+            &ply(
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
+                  end_header\n0 0 0\n0 1e39 0\n0 0 0\n0 0 0\n",
+            ),
+            "corners/frames/0.ply frame 0 vertex 1: found 1e39, expected a coordinate below 3.4e38 m, or NaN where the vertex was not observed",
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 999999999999\nproperty float x\nend_header\n"),

@@ -1,0 +1,14 @@
+//! `clips.csv`: poses of two clips.
+
+#![no_main]
+
+use fit_cloth_fuzz::Sample;
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+static SAMPLE: LazyLock<Sample> = LazyLock::new(Sample::default);
+
+fuzz_target!(|bytes: &[u8]| {
+    SAMPLE.put("pulled/clips.csv", bytes);
+    SAMPLE.read("pulled", bytes);
+});

@@ -1,0 +1,35 @@
+//! A curve as a table: stress over strain, or moment over curvature.
+
+#![no_main]
+
+use cloth_fit::curve_file::CurveFile;
+use cloth_sim::material::{Component, Compression, Model};
+use fit_cloth_fuzz::{Sample, answer, evaluate};
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+static SAMPLE: LazyLock<Sample> = LazyLock::new(Sample::default);
+
+fuzz_target!(|bytes: &[u8]| {
+    let path = SAMPLE.put("curve.csv", bytes);
+    let Some(file) = answer(CurveFile::read(&path), bytes) else { return };
+    let text = file.to_csv();
+    let back =
+        CurveFile::read(&SAMPLE.put("back.csv", text.as_bytes())).expect("what was written can be read");
+    assert_eq!((back.kind, back.to_csv()), (file.kind, text));
+    for (component, model, compression) in [
+        (Component::StretchWeft, Model::Stvk, Compression::ZeroStrain),
+        (Component::StretchWarp, Model::SoftConstraint, Compression::None),
+        (Component::Shear, Model::Springs, Compression::ZeroStrain),
+        (Component::BendDiagonal, Model::Stvk, Compression::ZeroStrain),
+    ] {
+        let negative = model.negative_strain(component, compression);
+        let Some(curve) = answer(file.curve(component, model, negative), bytes) else { continue };
+        evaluate(&curve);
+        // A table of the curve itself is read as that curve, but for the last digits.
+        let again = SAMPLE.put("again.csv", file.with_points(&curve).to_csv().as_bytes());
+        let again = CurveFile::read(&again).expect("what was written can be read");
+        let again = again.curve(component, model, negative).expect("its own points make a curve");
+        assert_eq!(again.len(), curve.len());
+    }
+});

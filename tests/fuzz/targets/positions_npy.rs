@@ -1,0 +1,14 @@
+//! `positions.npy`: shapes of four vertices.
+
+#![no_main]
+
+use fit_cloth_fuzz::Sample;
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+static SAMPLE: LazyLock<Sample> = LazyLock::new(Sample::default);
+
+fuzz_target!(|bytes: &[u8]| {
+    SAMPLE.put("bent/positions.npy", bytes);
+    SAMPLE.read("bent", bytes);
+});

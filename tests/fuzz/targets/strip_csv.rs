@@ -1,0 +1,24 @@
+//! A tensile machine's table of a strip, the first two columns of which are extension and force.
+
+#![no_main]
+
+use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
+use fit_cloth_fuzz::{Sample, answer, columns};
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+static SAMPLE: LazyLock<Sample> = LazyLock::new(Sample::default);
+
+fuzz_target!(|bytes: &[u8]| {
+    let Some([extension, force]) = columns(bytes) else { return };
+    let path = SAMPLE.put("strip.csv", bytes);
+    for (direction, extension) in [
+        (Direction::Weft, Extension::Separation(extension.clone())),
+        (Direction::Warp, Extension::Displacement(extension.clone())),
+        (Direction::Bias, Extension::Strain(extension)),
+    ] {
+        let test = StripTest::new(direction, 0.08, 0.04, extension, force.clone());
+        let Some(sequence) = answer(read_strip(&path, &test), bytes) else { continue };
+        SAMPLE.comes_back(sequence);
+    }
+});

@@ -1,0 +1,19 @@
+//! `test.toml`, of a strip that is pulled and of one that bends.
+
+#![no_main]
+
+use fit_cloth_fuzz::Sample;
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+static SAMPLE: LazyLock<Sample> = LazyLock::new(|| {
+    let sample = Sample::default();
+    sample.link("pulled/test.toml", "bent/test.toml");
+    sample
+});
+
+fuzz_target!(|bytes: &[u8]| {
+    SAMPLE.put("pulled/test.toml", bytes);
+    SAMPLE.read("pulled", bytes);
+    SAMPLE.read("bent", bytes);
+});
