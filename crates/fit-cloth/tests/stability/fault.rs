@@ -1,8 +1,6 @@
 //! A fit that something stops: at any of its calls to the file system, or at any allocation of memory.
 
-#[path = "../support/mod.rs"]
-mod support;
-
+use crate::support::full_set;
 use cloth_fit::io::write_set;
 use std::collections::BTreeMap;
 use std::fs;
@@ -74,7 +72,7 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
 /// A small set, `set`, in a folder.
 pub(crate) fn small_set() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    write_set(&folder.path().join("set"), &support::full_set()).unwrap();
+    write_set(&folder.path().join("set"), &full_set()).unwrap();
     folder
 }
 
