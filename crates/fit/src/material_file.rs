@@ -268,11 +268,11 @@ mod tests {
         };
         refused(b"{\n\"schema\": \"\xE9\"}", ":2 text: found the byte 0xE9");
         refused(b"", "file: found an empty file");
-        refused(b"{\n[}", ":2 material: found key must be a string");
+        refused(b"{\n[}", ":2 JSON: found key must be a string");
         let long = "a\\n".repeat(1000);
         refused(format!("{{\"schema\": \"{long}\"}}").as_bytes(), "schema: found \"a\\na\\n");
         let unknown = format!("{{\"schema\": \"{SCHEMA}\", \"{long}\": 1}}");
-        refused(unknown.as_bytes(), ":1 material: found unknown field `a\\na\\n");
+        refused(unknown.as_bytes(), "…: found an unknown key");
         std::fs::remove_file(&path).unwrap();
         let error = MaterialFile::read(&path).unwrap_err().to_string();
         assert!(error.ends_with("file: found nothing, expected a file"), "{error}");
@@ -373,8 +373,8 @@ mod tests {
             "material/9",
             "schema: found \"fit-cloth/material/9\", expected fit-cloth/material/1",
         );
-        refused("\"schema\"", "schema", "material.json:2 material: found ");
-        refused("\"variant\"", "\"variants\"", "unknown field `variants`");
+        refused("\"schema\"", "schema", "material.json:2 JSON: found ");
+        refused("\"variant\"", "\"variants\"", "material.json:4 variants: found an unknown key");
         refused(
             "\"strain\": 0.0",
             "\"strain\": 9.0",

@@ -42,7 +42,7 @@ mod surroundings;
 mod table;
 mod tokens;
 
-use table::{Extent, HEADER, Row, assert_green};
+use table::{Extent, HEADER, Row, SUMMARY, assert_green, summary};
 
 /// A test a case, and all of them in order.
 macro_rules! cases {
@@ -121,15 +121,16 @@ cases! {
 #[ignore = "full counts: many minutes"]
 fn full_run() {
     println!("{HEADER}");
-    let mut all = Vec::new();
+    let (mut all, mut summaries) = (Vec::new(), vec![SUMMARY.to_string()]);
     let wanted = std::env::var("CASE").unwrap_or_default();
-    for (_, case) in CASES.iter().filter(|(name, _)| name.contains(&wanted)) {
+    for (name, case) in CASES.iter().filter(|(name, _)| name.contains(&wanted)) {
         let rows = case(Extent::Full);
         rows.iter().for_each(|row| println!("{row}"));
+        summaries.push(summary(name, &rows));
         all.extend(rows);
     }
     let runs: u64 = all.iter().map(|row| row.runs).sum();
-    println!("\n{} distinct cases, {runs} runs", all.len());
+    println!("\n{}\n\n{} distinct cases, {runs} runs", summaries.join("\n"), all.len());
     assert_green(&all);
 }
 

@@ -126,6 +126,35 @@ pub(crate) const HEADER: &str = "\
 | case | condition | runs | survived | worst, of what is allowed | most iterations | decided by rounding |
 |---|---|---|---|---|---|---|";
 
+/// The header of [`summary`].
+pub(crate) const SUMMARY: &str = "\
+| case | | conditions | runs | survived | nearest to what is allowed | most iterations | decided by rounding |
+|---|---|---|---|---|---|---|---|";
+
+/// All conditions of a case in one row; of its measures that which comes nearest to its limit.
+///
+/// * `name` — of its test, `case_22_stiff_against_soft`
+pub(crate) fn summary(name: &str, rows: &[Row]) -> String {
+    let sum = |figure: fn(&Row) -> u64| rows.iter().map(figure).sum::<u64>();
+    let [_, number, title] = std::array::from_fn(|part| name.splitn(3, '_').nth(part).unwrap_or_default());
+    let share = |row: &Row| row.worst / row.limit;
+    let measured = rows.iter().filter(|row| !row.measure.is_empty() && row.limit > 0.0);
+    let nearest = measured.max_by(|a, b| share(a).total_cmp(&share(b)));
+    let nearest = nearest.map(|row| format!("{} {:.1e} of {:.0e}", row.measure, row.worst, row.limit));
+    let iterations = rows.iter().map(|row| row.iterations).max().unwrap_or_default();
+    format!(
+        "| {} | {} | {} | {} | {} | {} | {} | {} |",
+        number.trim_start_matches('0'),
+        title.replace('_', " "),
+        rows.len(),
+        sum(|row| row.runs),
+        sum(|row| row.survived),
+        nearest.unwrap_or_default(),
+        iterations,
+        sum(|row| row.by_rounding)
+    )
+}
+
 /// Fails with the first failure of every row that is not green.
 ///
 /// # Panics

@@ -26,7 +26,8 @@ pub(crate) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
 fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
     let message = error.to_string();
     let message = message.rsplit_once(" at line ").map_or(&message[..], |(message, _)| message);
-    let key = if key == "." { "" } else { key };
+    // A dot is the whole file, a question mark a place without a key.
+    let key = if [".", "?"].contains(&key) { "" } else { key };
     let within = |name: &str| match key.strip_suffix(name) {
         Some(outer) if outer.is_empty() || outer.ends_with('.') => key.to_string(),
         _ if key.is_empty() => name.to_string(),

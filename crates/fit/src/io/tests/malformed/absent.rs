@@ -31,7 +31,7 @@ fn names_and_columns() {
         ),
         (
             &text("stretch-weft/forces.csv", "frame,clip,fx_n,fy_n,fz_n,px_m\n0,low,1,1,1,1\n"),
-            "stretch-weft/forces.csv header: found a part of px_m, py_m, pz_m, expected all three or none",
+            "stretch-weft/forces.csv:1 header: found a part of px_m, py_m, pz_m, expected all three or none",
         ),
         (
             &text("bend/test.toml", "kind = \"bend-bias\"\ngravity_m_s2 = [0, 0, -9.81]\n"),
