@@ -378,10 +378,14 @@ mod tests {
         refused(
             "\"strain\": 0.0",
             "\"strain\": 9.0",
-            "stretch-weft: found control point 0: the first strain must be zero",
+            "curves.stretch-weft.control_points[0]: found the first strain must be zero",
         );
         let unit = "stiffness_n_m, where stiffness_n_per_m belongs";
-        refused("\"stiffness_n_per_m\"", "\"stiffness_n_m\"", "a control point needs stiffness_n_per_m or");
+        refused(
+            "\"stiffness_n_per_m\"",
+            "\"stiffness_n_m\"",
+            "found no stiffness, or two, expected stiffness_n_per_m",
+        );
         let mut file = fitted();
         let points = &mut file.curves.get_mut(&Component::StretchWeft).unwrap().control_points;
         points.iter_mut().for_each(|point| point.unit = Unit::NewtonMetre);
