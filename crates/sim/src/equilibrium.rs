@@ -286,7 +286,9 @@ impl<'a> Solver<'a> {
         self.clamped = 0;
         let mut energy = self.evaluate(curves, x);
         // An angle at a collapsed wing has a finite energy and forces that are not, on held nodes only if all are held.
-        let finite = energy.is_finite() && self.gradient.iter().all(|force| force.is_finite());
+        let finite = energy.is_finite()
+            && self.gradient.iter().all(|force| force.is_finite())
+            && self.cloth.norm(&self.gradient).is_finite();
         let mut status = if finite { Status::Stalled } else { Status::NotFinite };
         if status == Status::Stalled && settings.method == Method::MixedNewton {
             status = self.mixed_newton(curves, x, settings, &mut energy, &mut iterations);

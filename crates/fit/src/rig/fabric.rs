@@ -154,14 +154,6 @@ impl KnownFabric {
     /// # Errors
     /// Control points that make no curve.
     pub fn curves(&self) -> Result<Curves> {
-        self.named_curves().map_err(|(component, source)| Error::Mechanics {
-            context: format!("{}, {component}", self.name),
-            source,
-        })
-    }
-
-    /// The curves, or the first component whose control points make none.
-    fn named_curves(&self) -> std::result::Result<Curves, (Component, cloth_sim::error::Error)> {
         let membrane = self
             .curves
             .membrane()
@@ -174,10 +166,10 @@ impl KnownFabric {
         });
         let curve = |(component, strains, stiffnesses)| {
             let negative = self.model.negative_strain(component, Compression::ZeroStrain);
-            match StiffnessCurve::new(strains, stiffnesses, negative) {
-                Ok(curve) => Ok((component, curve)),
-                Err(defect) => Err((component, defect)),
-            }
+            let context = || format!("{}, {component}", self.name);
+            StiffnessCurve::new(strains, stiffnesses, negative)
+                .map(|curve| (component, curve))
+                .map_err(|source| Error::Mechanics { context: context(), source })
         };
         membrane.into_iter().chain(bending).map(curve).collect()
     }
@@ -197,10 +189,6 @@ impl KnownFabric {
                 found,
                 "a first overhang above 0 and a last one above it",
             ));
-        }
-        if let Err((component, defect)) = self.named_curves() {
-            let expected = "finite values at ascending places, the first at 0";
-            return Err(file.invalid(&format!("curves.{component}"), defect.to_string(), expected));
         }
         let side = self.width_m.min(self.height_m);
         for (key, value, most) in [
