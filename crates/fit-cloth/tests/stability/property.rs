@@ -41,6 +41,8 @@ where
     });
     row = counted.into_inner();
     if let Err(error) = outcome {
+        // A panic ended the run before it was counted.
+        row.runs += u64::from(row.runs == row.survived);
         row.failure = Some(format!("{error}"));
     }
     row
