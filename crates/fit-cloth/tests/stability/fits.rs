@@ -1,6 +1,6 @@
 //! Cases 32, 33 and 36 to 40: fits of measurements that say too little, that are wrong, or that follow another law.
 
-use crate::measured::{Uniform, overhangs};
+use crate::measured::{Uniform, bulging, overhangs};
 use crate::property::for_all;
 use crate::support::full_set;
 use crate::table::{Extent, Row};
@@ -10,11 +10,12 @@ use cloth_fit::io::write_set;
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::report::{Sample, StageReport};
-use cloth_fit::rig::{KnownFabric, Rig};
 use cloth_fit::stage::{Constraints, Settings, Variant, Watch};
 use cloth_fit::uncertainty::{Covariance, Scatter};
 use cloth_fit::validation::validate;
-use cloth_sim::material::{Component, Model};
+use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::{Component, Compression, Curves, Model};
 use fit_cloth::text;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -298,10 +299,12 @@ pub(crate) fn case_36(extent: Extent) -> Vec<Row> {
         rows.push(for_all(
             row,
             extent.runs(3, 100),
-            (-1.0..1.0, -2.0..1.0, 0usize..5),
+            (-1.0..1.0, -2.0..1.0, 0usize..15),
             |row, (stiffness, size, frame)| {
                 let (stiffness, size) = scaled((stiffness, size));
                 let mut set = overhangs(size, stiffness);
+                // Pushed out three times.
+                set.sequences[0].frames = vec![set.sequences[0].frames.clone(); 3].concat();
                 set.sequences[0].frames[frame].positions.iter_mut().flatten().for_each(|p| p.z = -p.z);
                 let found = fit(&set, &Settings { nodes: Some([9, 9]), ..settings(model) });
                 let found = found.map(|(_, stage)| stage.sequences[0].outliers.clone());
@@ -383,7 +386,7 @@ pub(crate) fn case_37(extent: Extent) -> Vec<Row> {
                 // Between points that are not negative a curve may fall, and then no frame has a stable equilibrium.
                 (
                     Constraints::ControlPoints,
-                    "constraints control points: a band from 0 up, or not converged and said so",
+                    "constraints control points: no band below 0; where not converged, said so",
                 ),
             ] {
                 let row = Row::new(37, format!("no stress up to a strain, {kind}, {model}, {name}"));
@@ -417,21 +420,20 @@ fn on_a_bound(
     let found = found.map(|(report, stage)| {
         // Zero itself is known exactly.
         let slack = stage.curve.samples.iter().filter(|sample| sample.strain > 0.0 && sample.strain <= 0.05);
-        let bands: Vec<Option<[f64; 2]>> = slack.map(|sample| sample.band).collect();
-        let one_sided = bands.iter().all(|band| band.is_some_and(|[low, high]| low == 0.0 && high > 0.0));
-        let said = report.converged()
-            || constraints == Constraints::ControlPoints && text::verdict(&stage).contains("NOT converged");
+        let bands: Vec<[f64; 2]> = slack.map(|sample| sample.band.unwrap_or([f64::NAN; 2])).collect();
+        let lowest = bands.iter().map(|band| band[0]).fold(f64::INFINITY, |a, b| if b >= a { a } else { b });
+        let from_zero = bands.iter().all(|[low, high]| *low == 0.0 && *high > 0.0);
         let active = stage.curve.active_constraints;
-        (
-            said,
-            one_sided,
-            active > 0 || !stage.converged,
-            active,
-            stage.curve.curve.len(),
-            bands[bands.len() / 2],
-        )
+        let holds = match constraints {
+            Constraints::Stable => report.converged() && from_zero && active > 0,
+            Constraints::ControlPoints => {
+                let said = report.converged() || text::verdict(&stage).contains("NOT converged");
+                said && lowest >= 0.0
+            }
+        };
+        (holds, report.converged(), active, bands)
     });
-    let holds = matches!(found, Ok((true, true, true, ..)));
+    let holds = matches!(found, Ok((true, ..)));
     row.holds(holds, || format!("stiffness {stiffness:e}, side {side:e}, noise {noise:?}: {found:?}"))
 }
 
@@ -507,58 +509,63 @@ fn starts_row(name: &str, set: &MeasurementSet, settings: &Settings, starts: u32
 
 // 39 ---------------------------------------------------------------------------------------------------------------
 
-const FABRICS: [(&str, &str); 4] = [
-    ("cotton-denim", include_str!("../../../../fixtures/fabrics/cotton-denim.toml")),
-    ("cotton-satin", include_str!("../../../../fixtures/fabrics/cotton-satin.toml")),
-    ("rayon-spandex-knit", include_str!("../../../../fixtures/fabrics/rayon-spandex-knit.toml")),
-    ("wool-cotton", include_str!("../../../../fixtures/fabrics/wool-cotton.toml")),
-];
-
-/// Sheets that fold out of their plane, of which others are as good: predicted by the true curves on another mesh. A frame
-/// that comes out on the other side, or in another fold, than was measured must be one that is flagged.
 pub(crate) fn case_39(extent: Extent) -> Vec<Row> {
-    let fabrics = &FABRICS[..extent.runs(1, 4) as usize];
     let mut rows = Vec::new();
-    for &(name, text) in fabrics {
-        for kind in [Kind::ComplexShear, Kind::CornerPull] {
-            let mut row =
-                Row::new(39, format!("{kind} of {name}: a frame far from the measured shape is flagged"));
-            let fabric = KnownFabric::parse(name.as_ref(), text).unwrap();
-            let rig = Rig {
-                sequences: vec![kind],
-                nodes: [17, 17],
-                measured: [17, 17],
-                frames: 6,
-                ..Rig::default()
-            };
-            let set = rig.measure(&fabric).unwrap();
-            let settings = Settings { nodes: Some([13, 13]), ..Settings::default() };
-            let validation =
-                validate(&set, &[kind], &fabric.curves().unwrap(), &settings, &Watch::default()).unwrap();
-            let validated = &validation.sequences[0];
-            let (frames, flagged) = (&set.sequences[0].frames, &validated.report.multi_stable);
-            for (index, frame) in frames.iter().enumerate() {
-                let heights = frame.positions.iter().flatten().map(|p| p.z);
-                let height = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
-                let folded = height[1] - height[0];
-                let off = validated.measure.as_ref().and_then(|(_, rows)| {
-                    let row = rows.iter().find(|row| row.frame == index)?;
-                    Some((row.measured - row.simulated).abs())
-                });
-                let range = validated.measure.as_ref().map_or(f64::NAN, |(_, rows)| {
-                    rows.iter().map(|row| row.measured.abs()).fold(0.0, f64::max)
-                });
-                let far = off.is_some_and(|off| off > 0.15 * range);
-                row.holds(!far || folded < 1e-3 || flagged.contains(&index), || {
-                    format!(
-                        "frame {index}, {folded:.1e} m high, off by {off:?} of {range}: flagged {flagged:?}"
-                    )
-                });
-            }
-            rows.push(row);
-        }
+    for model in TRIANGLES {
+        let row = Row::new(
+            39,
+            format!(
+                "bars pushed together 5 to 20 times as far as buckles, {model}: flagged, or compared on the right side"
+            ),
+        );
+        let inputs = (scales(), -4.5..-3.5, any::<u64>());
+        rows.push(for_all(row, extent.runs(3, 100), inputs, |row, (scales, thin, seed): (_, f64, u64)| {
+            buckled(row, model, scaled(scales), 10f64.powf(thin), seed)
+        }));
     }
     rows
+}
+
+/// A sheet that buckles in every other frame, predicted with its curves: a flat one would be balanced too, and so would one
+/// that bulges to the other side.
+///
+/// * `thin` — rigidity over stiffness and squared side
+fn buckled(row: &mut Row, model: Model, (stiffness, side): (f64, f64), thin: f64, seed: u64) -> bool {
+    let mut random = StdRng::seed_from_u64(seed);
+    // Euler's load of a sheet clamped at both ends, 4π² B/L², over the stiffness.
+    let euler = 4.0 * std::f64::consts::PI.powi(2) * thin;
+    let strains: Vec<f64> =
+        (0..6).map(|i| if i % 2 == 0 { -euler * random.random_range(5.0..20.0) } else { 0.005 }).collect();
+    let sides: Vec<f64> = (0..7).map(|_| if random.random_bool(0.5) { 1.0 } else { -1.0 }).collect();
+    let set = bulging(side, &strains, &|index| sides[index]);
+    let membrane = 500.0 * stiffness;
+    let hinge = membrane * thin * side * side / HINGE_STRAIN_PER_CURVATURE.powi(2);
+    let mut curves = Curves::default();
+    for component in Component::ALL {
+        let constant = match component {
+            bending if bending.is_bending() => hinge,
+            Component::Shear => 0.2 * membrane,
+            _ => membrane,
+        };
+        let negative = model.negative_strain(component, Compression::ZeroStrain);
+        curves.set(component, StiffnessCurve::constant(constant, negative).unwrap());
+    }
+    let settings = Settings { nodes: Some([9, 9]), ..settings(model) };
+    let validation = validate(&set, &[Kind::ComplexShear], &curves, &settings, &Watch::default());
+    let found = validation.map(|validation| {
+        let report = &validation.sequences[0].report;
+        (report.multi_stable.clone(), report.position_rms, validation.prediction.dropped.len())
+    });
+    // The least bulge that was seen; what is not flagged is compared, and must not be on the other side.
+    let shallowest = strains.iter().filter(|strain| **strain < 0.0).map(|strain| (-strain).sqrt());
+    let bulge = shallowest.fold(f64::INFINITY, f64::min) * 2.0 * side / std::f64::consts::PI;
+    let holds = found.as_ref().is_ok_and(|(flagged, rms, dropped)| {
+        let only = flagged.iter().all(|frame| frame % 2 == 1);
+        only && *dropped == 0 && rms.is_some_and(|rms| rms < 0.5 * bulge)
+    });
+    row.holds(holds, || {
+        format!("stiffness {stiffness:e}, side {side:e}, thin {thin:e}, seed {seed}: {found:?} {strains:?} {sides:?}")
+    })
 }
 
 // 40 ---------------------------------------------------------------------------------------------------------------

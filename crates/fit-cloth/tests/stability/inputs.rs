@@ -179,11 +179,11 @@ pub(crate) fn case_42(extent: Extent) -> Vec<Row> {
     let texts: Vec<&Reader> = readers(&TEXTS).collect();
     let inputs = (any::<usize>(), any::<usize>(), 0x80u8..);
     let row = Row::new(42, "a byte of Latin-1 at any place of any text");
-    rows.push(for_all(row, extent.runs(300, 20_000), inputs, |row, (file, at, byte)| {
+    rows.push(for_all(row, extent.runs(300, 10_000), inputs, |row, (file, at, byte)| {
         let reader = pick(&texts, file);
         // Beside a letter of two bytes it might make another letter.
         let places: Vec<usize> =
-            (0..reader.text().len()).filter(|&at| reader.text()[..at].is_ascii()).collect();
+            (0..reader.text().len()).filter(|&at| reader.bytes()[..at].is_ascii()).collect();
         let at = *pick(&places, at);
         let mut bytes = reader.bytes().to_vec();
         bytes.insert(at, byte);
@@ -229,7 +229,7 @@ pub(crate) fn case_43(extent: Extent) -> Vec<Row> {
     {
         let all: Vec<&Reader> = readers(&[form]).collect();
         let row = Row::new(43, format!("a decimal comma for any point: {name}"));
-        rows.push(for_all(row, extent.runs(60, 4_000), any::<[usize; 3]>(), |row, [file, at, quotes]| {
+        rows.push(for_all(row, extent.runs(60, 2_000), any::<[usize; 3]>(), |row, [file, at, quotes]| {
             let reader = pick(&all, file);
             let tokens = numbers(reader);
             // In a list it would be one number more.
@@ -300,7 +300,7 @@ pub(crate) fn case_44(extent: Extent) -> Vec<Row> {
                 44,
                 format!("nan, inf, 1e400, \u{2212}1 or nothing for any number: {}", reader.file),
             );
-            for_all(row, extent.runs(40, 3_000), any::<[usize; 2]>(), |row, [at, damage]| {
+            for_all(row, extent.runs(40, 1_000), any::<[usize; 2]>(), |row, [at, damage]| {
                 let (token, by) = (pick(&tokens, at), *pick(&NO_NUMBERS, damage));
                 let by = if by.is_empty() && may_miss(reader, token) { "nan" } else { by };
                 let wanted = Wanted { line: Some(token.line), field: &token.field, words: "" };
@@ -332,7 +332,7 @@ fn joined(cells: &[Vec<String>]) -> String {
 pub(crate) fn case_45(extent: Extent) -> Vec<Row> {
     let place = Place::new();
     let tables: Vec<&Reader> = readers(&[Form::Table]).collect();
-    let runs = extent.runs(60, 4_000);
+    let runs = extent.runs(60, 2_000);
     let mut rows = Vec::new();
     type Damage = fn(&mut Vec<Vec<String>>, usize, usize) -> (usize, &'static str);
     // Cells, a line below the header and a column; gives the line of the refusal and its field.
@@ -509,7 +509,7 @@ pub(crate) fn case_47(extent: Extent) -> Vec<Row> {
     let place = Place::new();
     let meshes: Vec<&Reader> =
         readers(&[Form::Obj]).filter(|reader| !reader.file.contains("frames")).collect();
-    let runs = extent.runs(60, 4_000);
+    let runs = extent.runs(60, 2_000);
     let mut rows = Vec::new();
     let damages: [(&str, &str, Corner); 9] = [
         ("index 0", "f v", |_, parts, _| {
@@ -655,7 +655,7 @@ pub(crate) fn case_48(extent: Extent) -> Vec<Row> {
     rows.push(row);
     let keys = names(reader);
     let row = Row::new(48, "any key of JSON twice");
-    rows.push(for_all(row, extent.runs(60, 4_000), any::<usize>(), |row, at| {
+    rows.push(for_all(row, extent.runs(60, 2_000), any::<usize>(), |row, at| {
         let token = pick(&keys, at);
         // The whole value again, on the line above.
         let start = token.place.start - 1;
@@ -708,7 +708,7 @@ pub(crate) fn case_48(extent: Extent) -> Vec<Row> {
     }
     rows.push(row);
     let row = Row::new(48, "cut off anywhere");
-    rows.push(for_all(row, extent.runs(60, 4_000), 1..text.trim_end().len(), |row, end| {
+    rows.push(for_all(row, extent.runs(60, 2_000), 1..text.trim_end().len(), |row, end| {
         let cut = &text[..end];
         // The parser names the line where it found the end.
         let outcome = reader.refusal(&place, cut.as_bytes());

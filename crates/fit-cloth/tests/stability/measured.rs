@@ -3,7 +3,7 @@
 use crate::support::full_set;
 use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_sim::material::Model;
-use cloth_sim::mesh::{Diagonals, Grid};
+use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -100,6 +100,47 @@ impl Uniform<'_> {
         let pull = side * (self.law)(strain);
         (poses, vec![-pull * weft, pull * weft, -pull * warp, pull * warp])
     }
+}
+
+/// A sheet between two bars that are pushed together and pulled apart in turn, weightless: pushed it bulges, as a sheet
+/// clamped at both ends does, to the side that is told.
+///
+/// * `strains` — relative change of the bars' distance in the frames after the first
+/// * `side_of` — 1.0 or −1.0 a frame
+pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64) -> MeasurementSet {
+    let law = |_: f64| 0.0;
+    let strip = Uniform {
+        kind: Kind::StretchWeft,
+        model: Model::SoftConstraint,
+        side,
+        law: &law,
+        strains,
+        noise: None,
+    };
+    let mut set = strip.measure();
+    let sequence = &mut set.sequences[0];
+    sequence.kind = Kind::ComplexShear;
+    sequence.name = sequence.kind.to_string();
+    let grid = Grid { columns: 9, rows: 9, width: side, height: side, diagonals: Diagonals::Alternating };
+    sequence.mesh = Mesh { grid: None, ..grid.mesh().unwrap() };
+    let column = |column: usize| (0..9).map(|row| grid.node(column, row)).collect();
+    // Else a tenth of a millimetre is taken for noise.
+    sequence.noise = Some(Noise { position_m: Some(1e-5 * side), force_n: None });
+    sequence.clips[0].vertices = column(0);
+    sequence.clips[1].vertices = column(8);
+    for (index, frame) in sequence.frames.iter_mut().enumerate() {
+        // Sheared by so little that it does nothing but tell the frame from one at rest.
+        frame.poses[1].translation.y = if index == 0 { 0.0 } else { 2e-3 * side };
+        let strain = if index == 0 { 0.0 } else { strains[index - 1] };
+        // The way out of the plane that takes up the shortening: w = A/2 (1 − cos 2πx/L), A = 2L/π √δ.
+        let height = side_of(index) * 2.0 * side / std::f64::consts::PI * (-strain).max(0.0).sqrt();
+        let place = |p: &Vector3<f64>| {
+            let turn = std::f64::consts::TAU * p.x / side;
+            Vector3::new(p.x * (1.0 + strain), p.y, 0.5 * height * (1.0 - turn.cos()))
+        };
+        frame.positions = Some(sequence.mesh.positions.iter().map(place).collect());
+    }
+    set
 }
 
 /// Overhangs of a heavy elastica along weft, of another size and stiffness than those of [`full_set`]: the shapes stay

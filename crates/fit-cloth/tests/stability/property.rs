@@ -40,6 +40,8 @@ where
         if holds { Ok(()) } else { Err(TestCaseError::fail(failure.unwrap_or_default())) }
     });
     row = counted.into_inner();
+    // A panic ended the run before it was counted.
+    row.runs += u64::from(outcome.is_err() && row.runs == row.survived);
     match outcome {
         Err(TestError::Fail(reason, smallest)) => {
             row.failure = Some(format!("{reason}\n  from {smallest:?}"))

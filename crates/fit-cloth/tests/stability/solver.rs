@@ -101,7 +101,9 @@ fn fractions(row: &mut Row, seed: u64, spread: f64) -> bool {
         DVector::from_fn(m, |i, _| target[i] as f64),
     );
     let solution = problem.solve();
-    let largest = exact.iter().fold(f64::MIN_POSITIVE, |largest, x| largest.max(x.abs()));
+    let largest = exact.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    // What is zero exactly is known to the rounding of the target.
+    let largest = if largest > 0.0 { largest } else { 1.0 };
     let error =
         (0..n).map(|j| (solution.point[j] * scales[j] - exact[j]).abs() / largest).fold(0.0, f64::max);
     let error = if solution.status == Status::Optimal { error } else { f64::NAN };
@@ -156,7 +158,7 @@ fn random_problem(seed: u64, spread: f64, hidden: bool) -> LeastSquares {
 }
 
 /// The largest violation of the conditions of optimality, in unknowns whose columns have unit length:
-/// Jᵀ(Jp − y) = Σ λ g, λ ≥ 0, g·p ≥ h, λ (g·p − h) = 0.
+/// Jᵀ(Jp − y) = Σ λ g, λ ≥ 0, g·p ≥ h, λ or g·p − h = 0.
 fn conditions(problem: &LeastSquares, solution: &Solution) -> f64 {
     let lengths: Vec<f64> = problem
         .jacobian
@@ -183,7 +185,8 @@ fn conditions(problem: &LeastSquares, solution: &Solution) -> f64 {
             Bound::Lower(j) => gradient[j] -= active.multiplier,
             Bound::Upper(j) => gradient[j] += active.multiplier,
         }
-        worst = worst.max(slack(active.bound).abs()).max(-active.multiplier / size);
+        let pull = active.multiplier / size;
+        worst = worst.max(slack(active.bound).abs().min(pull.abs())).max(-pull);
     }
     let n = problem.jacobian.ncols();
     let rows = (0..problem.rows.nrows()).filter(|&i| problem.bounds[i].is_finite()).map(Bound::Row);

@@ -85,7 +85,7 @@ impl Row {
 
     /// One more run with its measure; it survives if that is within the limit. A NaN is not.
     pub(crate) fn measure(&mut self, measure: f64, input: impl FnOnce() -> String) -> bool {
-        if !(measure <= self.worst) {
+        if measure.is_nan() || measure > self.worst {
             self.worst = measure;
         }
         let (what, limit) = (self.measure, self.limit);
