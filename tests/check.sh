@@ -6,6 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 cargo test --workspace
 cargo fmt --all -- --check
+cargo fmt --manifest-path tests/fuzz/Cargo.toml -- --check
 cargo clippy --workspace --all-targets -- -D warnings
 # The target on real measurements is left out of plain test runs, and so of --all-targets.
 cargo clippy -p fit-cloth-tests --test real -- -D warnings

@@ -21,7 +21,7 @@ RUSTFLAGS="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
     -Cllvm-args=-sanitizer-coverage-trace-compares -Cllvm-args=-simplifycfg-branch-fold-threshold=0
     -Cllvm-args=-sanitizer-coverage-stack-depth --cfg fuzzing" \
-    cargo build --quiet --release --locked --target "$triple" --bins
+    cargo build --quiet --release --locked --target "$triple" --target-dir target --bins
 programs=target/$triple/release
 
 # In memory, where there is such a file system: a target writes a file for every execution.
@@ -60,6 +60,7 @@ row='%-14s | %11s | %12s | %8s | %7s\n'
 # shellcheck disable=SC2059
 printf "$row" target executions 'a second' coverage crashes
 failed=0
+all=0
 for target in "$@"; do
     log=target/log/$target
     crashes=0
@@ -69,8 +70,11 @@ for target in "$@"; do
         grep -a -E 'panicked|ERROR|SUMMARY|Test unit written' -A 2 "$log" >&2
     fi
     final() { sed -n "s/^stat::$1: *//p" "$log"; }
+    executions=$(final number_of_executed_units)
+    all=$((all + ${executions:-0}))
     # shellcheck disable=SC2059
-    printf "$row" "$target" "$(final number_of_executed_units)" "$(final average_exec_per_sec)" \
+    printf "$row" "$target" "$executions" "$(final average_exec_per_sec)" \
         "$(grep -a -o 'cov: [0-9]*' "$log" | tail -1 | cut -c 6-)" "$crashes"
 done
+echo "$all executions"
 exit $failed
