@@ -28,6 +28,7 @@ mod inputs;
 mod interruption;
 mod measured;
 mod meshes;
+mod misfits;
 mod motion;
 mod property;
 mod readers;
@@ -35,6 +36,7 @@ mod sheets;
 mod solver;
 mod stiff;
 mod stretched;
+mod structure;
 #[path = "../support/mod.rs"]
 mod support;
 #[cfg(target_os = "linux")]
@@ -95,19 +97,19 @@ cases! {
     case_33_one_frame_and_identical_frames => fits::case_33,
     case_34_columns_far_apart => solver::case_34,
     case_35_almost_solved => solver::case_35,
-    case_36_outliers => fits::case_36,
+    case_36_outliers => misfits::case_36,
     case_37_truth_on_a_bound => fits::case_37,
     case_38_twenty_starts => fits::case_38,
-    case_39_buckled_frames => fits::case_39,
-    case_40_wrong_models => fits::case_40,
+    case_39_buckled_frames => misfits::case_39,
+    case_40_wrong_models => misfits::case_40,
     case_41_marks_and_line_endings => inputs::case_41,
     case_42_other_encodings => inputs::case_42,
     case_43_semicolons_and_decimal_commas => inputs::case_43,
     case_44_what_is_no_number => inputs::case_44,
-    case_45_ragged_tables => inputs::case_45,
-    case_46_units_missing => inputs::case_46,
-    case_47_faces_of_obj => inputs::case_47,
-    case_48_json => inputs::case_48,
+    case_45_ragged_tables => structure::case_45,
+    case_46_units_missing => structure::case_46,
+    case_47_faces_of_obj => structure::case_47,
+    case_48_json => structure::case_48,
     case_49_what_is_no_file => files::case_49,
     #[cfg(target_os = "linux")] case_50_interrupted_at_any_moment => interruption::case_50,
     #[cfg(target_os = "linux")] case_51_killed_at_every_write => interruption::case_51,
