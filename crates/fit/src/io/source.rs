@@ -83,8 +83,8 @@ pub(crate) fn shown(text: &str) -> String {
 
 /// The same, up to so many characters.
 pub(crate) fn shortened(text: &str, longest: usize) -> String {
-    if text.is_empty() {
-        return "nothing".into();
+    if text.trim().is_empty() {
+        return if text.is_empty() { "nothing" } else { "blanks" }.into();
     }
     let mut characters = text.chars().flat_map(escaped);
     let mut short: String = characters.by_ref().take(longest).collect();

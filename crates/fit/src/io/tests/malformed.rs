@@ -83,6 +83,11 @@ fn fabric_file() {
         &[
             (
                 "width_m = 0.1",
+                "\" \" = 840",
+                ":2 blanks: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes",
+            ),
+            (
+                "width_m = 0.1",
                 "width_m = -1",
                 ":2 width_m: found -1, expected a length above 0 and at most 10 m (millimetres?)",
             ),
@@ -491,6 +496,10 @@ fn shapes() {
         (
             &edit("<f4", ">f4"),
             "bend/positions.npy descr: found >f4, expected <f4 or <f8 (little-endian float32 or float64)",
+        ),
+        (
+            &edit("<f4", "   "),
+            "bend/positions.npy descr: found blanks, expected <f4 or <f8 (little-endian float32 or float64)",
         ),
         (
             &edit("False", "True"),
