@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! cargo test -p fit-cloth --test stability                                            every case, few runs
-//! cargo test -p fit-cloth --test stability --release -- --ignored --nocapture         every case, all runs, the table
+//! cargo test -p fit-cloth --test stability full_run -- --ignored --nocapture          every case, all runs, the table
 //! CASE=case_22 cargo test …                                                           one of them
 //! ```
 
