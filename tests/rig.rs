@@ -113,7 +113,7 @@ fn a_figure_that_cannot_be_is_named_with_its_line() {
         (
             "strain = [0.0, 0.025, 0.05,",
             "strain = [0.0, 0.05, 0.025,",
-            "d.toml:31 curves.shear: found control point 2: its strain",
+            "d.toml:32 curves.shear.strain[2]: found 0.025: its strain is not above the one before",
         ),
     ] {
         assert!(text.contains(from), "{from}");
