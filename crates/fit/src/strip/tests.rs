@@ -216,6 +216,13 @@ fn a_unit_is_never_guessed() {
         "d_m",
         "t.csv:1 f_N: found the unit N, expected one of m, mm, cm, in",
     );
+    // A name may be of characters that move a terminal's cursor.
+    check(
+        "\u{1b}d,f_N",
+        Extension::Separation("\u{1b}d".into()),
+        "f_N",
+        "t.csv:1 \\u{1b}d: found no unit, expected one of m, mm, cm, in, in its name as \\u{1b}d [UNIT] or asked for as \\u{1b}d:UNIT",
+    );
     // Mega is not milli.
     check(
         "d_m,f_MN",
