@@ -1,6 +1,5 @@
 //! What can be wrong with measurements and settings. A fit that does not converge is no error: see the report.
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -8,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum Error {
     /// A file does not say what it should. Shown as `file:line field: found …, expected …`.
-    #[error("{}{} {}: found {}, expected {}", on_one_line(path.display()), line.map(|line| format!(":{line}")).unwrap_or_default(), on_one_line(field), on_one_line(found), on_one_line(expected))]
+    #[error("{}{} {field}: found {found}, expected {expected}", on_one_line(path), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Input {
         /// The file or folder.
         path: PathBuf,
@@ -22,7 +21,7 @@ pub enum Error {
         expected: String,
     },
     /// The operating system refused.
-    #[error("{}: {source}", on_one_line(path.display()))]
+    #[error("{}: {source}", on_one_line(path))]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -62,10 +61,10 @@ pub enum Error {
 /// Result with the crate's [`Error`](enum@Error).
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Words as a message shows them: a name in a file, or of a file, may hold a line feed.
-fn on_one_line(words: impl Display) -> String {
+/// A path as a message shows it: a name may hold a line feed.
+fn on_one_line(path: &Path) -> String {
     let escaped = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
-    words.to_string().chars().map(escaped).collect()
+    path.display().to_string().chars().map(escaped).collect()
 }
 
 impl Error {

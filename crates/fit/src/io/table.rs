@@ -131,7 +131,7 @@ impl Table {
 
     /// Bad input in the header.
     pub fn bad_header(&self, field: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
-        Error::input(&self.path, self.header_line, field, found, expected)
+        Error::input(&self.path, self.header_line, shown(field), found, expected)
     }
 
     /// Bad input in the table as a whole.

@@ -223,6 +223,17 @@ fn a_unit_is_never_guessed() {
         "f_N",
         "t.csv:1 \\u{1b}d: found no unit, expected one of m, mm, cm, in, in its name as \\u{1b}d [UNIT] or asked for as \\u{1b}d:UNIT",
     );
+    // Nor is a whole row that was taken for a name repeated.
+    let long = "d".repeat(2000);
+    let short = "d".repeat(60) + "…";
+    check(
+        &format!("{long},f_N"),
+        Extension::Separation(long.as_str().into()),
+        "f_N",
+        &format!(
+            "t.csv:1 {short}: found no unit, expected one of m, mm, cm, in, in its name as {short} [UNIT] or asked for as {short}:UNIT"
+        ),
+    );
     // Mega is not milli.
     check(
         "d_m,f_MN",
