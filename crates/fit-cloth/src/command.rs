@@ -6,6 +6,7 @@ pub mod curve;
 pub mod fit;
 pub mod goal;
 pub mod import;
+pub mod report;
 pub mod rig;
 pub mod simulate;
 pub mod study;
@@ -46,6 +47,7 @@ pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failur
         Command::Curve(curve) => curve::run(curve, options.telling, output),
         Command::Compare(compare) => compare::run(compare, options.telling, output),
         Command::Simulate(simulate) => simulate::run(simulate, options.telling, output),
+        Command::Report(report) => report::run(report, options.telling, output),
         Command::Study(study) => study::run(study, options.telling, output),
         Command::Validate(validate) => validate::run(validate, options.telling, output),
     }

@@ -12,6 +12,7 @@ use crate::command::compare::CompareOptions;
 use crate::command::curve::Curve;
 use crate::command::goal;
 use crate::command::import::Import;
+use crate::command::report::ReportOptions;
 use crate::command::rig::RigOptions;
 use crate::command::simulate::SimulateOptions;
 use crate::command::study::StudyOptions;
@@ -62,6 +63,8 @@ pub enum Command {
     Simulate(SimulateOptions),
     /// Study error against run time, and what each part of a scene saves and costs
     Study(StudyOptions),
+    /// Write the page of a fit or a comparison again
+    Report(ReportOptions),
 }
 
 /// How results are told; every command has these flags.

@@ -1,67 +1,92 @@
 //! Figures of a fit, a validation, a study or a simulation, as SVG: `plots/*.svg`.
 
 mod chart;
-mod forces;
+mod convergence;
+mod correlation;
+pub(crate) mod forces;
 mod measure;
+mod painter;
+mod pair;
+mod picture;
+mod profiles;
+mod residual_field;
+mod residual_table;
+mod series;
 mod shape;
+mod sheet;
 mod stress;
 mod study;
+mod view;
+mod writing;
 
 use crate::scene::Scene;
+use crate::shown::profiles;
 use crate::simulation::Simulation;
 use crate::study::Study;
+use chart::Drawn;
 use cloth_fit::error::{Error, Result};
-use cloth_fit::frame::Kind;
+use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::SequenceReport;
 use cloth_fit::store::write_file;
 use cloth_fit::validation::{Validated, Validation};
 use cloth_sim::material::Model;
 use plotters::style::RGBColor;
-use std::path::Path;
+use sheet::Sheet;
+use std::path::{Path, PathBuf};
 
-const MODEL: RGBColor = RGBColor(31, 90, 160);
-const LOADING: RGBColor = RGBColor(200, 80, 30);
-const UNLOADING: RGBColor = RGBColor(120, 120, 120);
-const THIRD: RGBColor = RGBColor(0, 140, 110);
-const FOURTH: RGBColor = RGBColor(190, 110, 160);
+// Okabe and Ito 2008: told apart by those who see red and green alike, too.
+const BLUE: RGBColor = RGBColor(0, 114, 178);
+const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+const GREEN: RGBColor = RGBColor(0, 158, 115);
+const PINK: RGBColor = RGBColor(204, 121, 167);
+const ORANGE: RGBColor = RGBColor(230, 159, 0);
+const SKY: RGBColor = RGBColor(86, 180, 233);
+const GREY: RGBColor = RGBColor(110, 110, 110);
 
-/// Writes a fit's figures into a result folder: every observed curve, and every kind of test on which forces were
-/// measured.
+/// What was simulated, and what was measured, in every figure.
+const MODEL: RGBColor = BLUE;
+const MEASURED: RGBColor = VERMILLION;
+
+/// Writes a fit's figures into a result folder: every observed curve, every test, and how the fit went.
 ///
 /// # Errors
 /// What the operating system refuses.
-pub fn write_plots(folder: &Path, report: &FitReport) -> Result<()> {
-    let plots = folder.join("plots");
-    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
+pub fn write_plots(folder: &Path, set: &MeasurementSet, report: &FitReport) -> Result<()> {
+    let plots = Plots::new(folder)?;
     for stage in report.last_stages().filter(|stage| stage.curve.observed) {
-        // Drawing into memory cannot fail but for a figure of a curve without extent; then there is none.
-        if let Ok(figure) = stress::draw(stage) {
-            let what = if stage.components[0].is_bending() { "moment" } else { "stress" };
-            write_file(&plots.join(format!("{}-{what}.svg", stage.components[0])), figure.as_bytes())?;
-        }
+        let what = if stage.components[0].is_bending() { "moment" } else { "stress" };
+        plots.write(&format!("{}-{what}", stage.components[0]), stress::draw(stage))?;
     }
-    let sequences = report.sequences();
-    write_forces(&plots, report.model, &sequences.iter().map(|(_, sequence)| *sequence).collect::<Vec<_>>())
+    plots.write("convergence", convergence::draw(report))?;
+    plots.write("correlation", correlation::draw(report))?;
+    plots.write("residuals", residual_table::draw(report))?;
+    let sequences: Vec<_> = report.sequences().into_iter().map(|(_, sequence)| sequence).collect();
+    plots.write_tests(set, report.model, &sequences)
 }
 
-/// Writes a validation's figures into its folder: the forces of every kind of test, and measures of the whole.
+/// Writes a validation's figures into its folder: every test, and measures of the whole.
 ///
 /// # Errors
 /// What the operating system refuses.
-pub fn write_validation_plots(folder: &Path, model: Model, validation: &Validation) -> Result<()> {
-    let plots = folder.join("plots");
-    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
+pub fn write_validation_plots(
+    folder: &Path,
+    set: &MeasurementSet,
+    model: Model,
+    validation: &Validation,
+) -> Result<()> {
+    let plots = Plots::new(folder)?;
     for Validated { report, measure } in &validation.sequences {
-        let figure = measure.as_ref().map(|(name, rows)| {
-            measure::draw(&format!("{}, {model}", report.name), report.kind, *name, rows)
-        });
-        if let Some(Ok(figure)) = figure {
-            write_file(&plots.join(format!("{}-measure.svg", report.name)), figure.as_bytes())?;
+        if let Some((name, rows)) = measure {
+            let title = format!("{}, {model}", report.name);
+            plots.write(
+                &format!("{}-measure", report.name),
+                measure::draw(&title, report.kind, *name, rows),
+            )?;
         }
     }
-    let sequences: Vec<&SequenceReport> = validation.sequences.iter().map(|s| &s.report).collect();
-    write_forces(&plots, model, &sequences)
+    let sequences: Vec<_> = validation.sequences.iter().map(|sequence| &sequence.report).collect();
+    plots.write_tests(set, model, &sequences)
 }
 
 /// Writes a study's figures into its folder.
@@ -69,15 +94,8 @@ pub fn write_validation_plots(folder: &Path, model: Model, validation: &Validati
 /// # Errors
 /// What the operating system refuses.
 pub fn write_study_plots(folder: &Path, study: &Study) -> Result<()> {
-    let plots = folder.join("plots");
-    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
-    for (name, figure) in study::figures(study) {
-        // What was not run has no figure.
-        if let Ok(figure) = figure {
-            write_file(&plots.join(format!("{name}.svg")), figure.as_bytes())?;
-        }
-    }
-    Ok(())
+    let plots = Plots::new(folder)?;
+    study::figures(study).into_iter().try_for_each(|(name, figure)| plots.write(&name, figure))
 }
 
 /// Writes the picture of a simulation's shapes into its folder.
@@ -85,30 +103,68 @@ pub fn write_study_plots(folder: &Path, study: &Study) -> Result<()> {
 /// # Errors
 /// What the operating system refuses.
 pub fn write_simulation_plots(folder: &Path, scene: &Scene, simulation: &Simulation) -> Result<()> {
-    let plots = folder.join("plots");
-    std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
-    // Drawing into memory cannot fail but for a sheet without extent; then there is none.
-    if let Ok(figure) = shape::draw(scene, simulation) {
-        write_file(&plots.join("shapes.svg"), figure.as_bytes())?;
-    }
-    Ok(())
+    Plots::new(folder)?.write("shapes", shape::draw(scene, simulation))
 }
 
-/// A figure for each kind of test on which forces were measured.
-fn write_forces(plots: &Path, model: Model, sequences: &[&SequenceReport]) -> Result<()> {
-    let mut kinds: Vec<_> = sequences.iter().map(|sequence| sequence.kind).collect();
-    kinds.sort();
-    kinds.dedup();
-    for kind in kinds {
-        let shown: Vec<_> = sequences.iter().copied().filter(|s| s.kind == kind).collect();
-        if let Ok(figure) = forces::draw(&format!("{kind}, {model}"), kind, &shown) {
-            write_file(&plots.join(format!("{kind}-force.svg")), figure.as_bytes())?;
+/// The folder that figures are written into.
+struct Plots(PathBuf);
+
+impl Plots {
+    fn new(folder: &Path) -> Result<Self> {
+        let plots = folder.join("plots");
+        std::fs::create_dir_all(&plots).map_err(|source| Error::io(&plots, source))?;
+        Ok(Self(plots))
+    }
+
+    /// Drawing into memory cannot fail but for a figure that would be empty or without extent; then there is none.
+    fn write(&self, name: &str, figure: Drawn<String>) -> Result<()> {
+        match figure {
+            Ok(figure) => write_file(&self.0.join(format!("{name}.svg")), figure.as_bytes()),
+            Err(_) => Ok(()),
         }
     }
-    Ok(())
+
+    /// Of every kind of test the forces, of every sequence its shapes.
+    fn write_tests(&self, set: &MeasurementSet, model: Model, sequences: &[&SequenceReport]) -> Result<()> {
+        let mut kinds: Vec<_> = sequences.iter().map(|sequence| sequence.kind).collect();
+        kinds.sort();
+        kinds.dedup();
+        for kind in kinds {
+            let shown: Vec<_> = sequences.iter().copied().filter(|s| s.kind == kind).collect();
+            let title = format!("{kind}, {model}");
+            self.write(&format!("{kind}-force"), forces::draw(&title, kind, &shown))?;
+        }
+        for found in sequences {
+            let Some(sequence) = set.sequences.iter().find(|sequence| sequence.name == found.name) else {
+                continue;
+            };
+            let title = format!("{}, {model}", found.name);
+            self.write(&format!("{}-shape", found.name), pair::draw(&title, sequence, found))?;
+            self.write(&format!("{}-residual", found.name), residual_field::draw(&title, sequence, found))?;
+            let profiles = profiles(sequence, &found.shapes);
+            self.write(&format!("{}-profiles", found.name), profiles::draw(&title, &profiles))?;
+        }
+        Ok(())
+    }
 }
 
-/// What a test's extension is.
-fn extension(kind: Kind) -> &'static str {
-    if kind == Kind::Shear { "shear angle [rad]" } else { "extension" }
+/// What a test's extension is, for an axis.
+pub(crate) fn extension(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Shear | Kind::ComplexShear => "effective shear angle [rad]",
+        Kind::BendWeft | Kind::BendWarp | Kind::BendBias => "overhang [m]",
+        _ => "extension [–]",
+    }
+}
+
+/// A title with the frame that is shown.
+fn frame_title(title: &str, kind: Kind, sheet: &Sheet) -> String {
+    let extension = match kind {
+        Kind::Shear | Kind::ComplexShear => format!("shear angle {:.3} rad", sheet.extension),
+        Kind::BendWeft | Kind::BendWarp | Kind::BendBias => {
+            format!("overhang {:.1} mm", 1e3 * sheet.extension)
+        }
+        _ => format!("extension {:.2} %", 100.0 * sheet.extension),
+    };
+    format!("{title}: frame {}, {extension}", sheet.frame)
 }

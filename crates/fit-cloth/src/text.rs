@@ -2,6 +2,7 @@
 
 mod check;
 mod comparison;
+mod overall;
 mod residuals;
 mod simulation;
 mod stage;
@@ -11,18 +12,20 @@ mod validation;
 mod verdict;
 
 pub use check::{check, repaired};
-pub use comparison::comparison;
+pub use comparison::{comparison, ranking};
+pub use overall::{Overall, overall};
 pub use residuals::residuals;
 pub use simulation::simulation;
-pub use stage::stage;
+pub use stage::{course, stage};
 pub use study::{study, study_page};
-pub use summary::{as_published, missing, summary};
+pub use summary::{as_published, missing, summary, summary_rows};
 pub use validation::validation;
 pub use verdict::verdict;
 
 use cloth_fit::interventions::Interventions;
-use cloth_fit::report::StageReport;
+use cloth_fit::report::{Sample, StageReport};
 use cloth_fit::simulation::Objective;
+use cloth_sim::material::Component;
 use std::fmt::Display;
 
 /// Items with commas between them.
@@ -38,12 +41,30 @@ fn unit(stage: &StageReport) -> (&'static str, f64) {
     }
 }
 
+/// What a curve is over, and what it gives.
+pub(crate) fn curve_labels(component: Component) -> [&'static str; 2] {
+    match component.is_bending() {
+        true => ["curvature [1/m]", "moment per width [N]"],
+        false => ["strain", "stress [N/m]"],
+    }
+}
+
 /// What helped solves and fits along, on a line; nothing where nothing did.
 fn interventions(interventions: &Interventions) -> String {
     match interventions.in_words()[..] {
         [] => String::new(),
         ref words => format!("  helped along by: {}\n", list(words)),
     }
+}
+
+/// Half a band this many times what it is about is no knowledge of it.
+pub(crate) const NO_KNOWLEDGE: f64 = 10.0;
+
+/// Half a sample's 95 % band over its stress; nothing where that is not known.
+fn half_band(sample: &Sample) -> Option<f64> {
+    let [low, high] = sample.band?;
+    // Infinite, or no number, where there is no stress.
+    Some(0.5 * (high - low) / sample.stress.abs()).filter(|half| *half < NO_KNOWLEDGE)
 }
 
 /// A number, or a dash where there is none.

@@ -66,6 +66,11 @@ fn the_examples_of_compare_run() {
 }
 
 #[test]
+fn the_examples_of_report_run() {
+    examples_run("report");
+}
+
+#[test]
 fn the_examples_of_study_run() {
     examples_run("study");
 }

@@ -65,10 +65,19 @@ fn the_fixture_ends_with_two_curves_and_a_residual_table() {
             "curves/stretch-weft.csv",
             "forces.csv",
             "material.json",
+            "plots/convergence.svg",
+            "plots/correlation.svg",
+            "plots/residuals.svg",
             "plots/stretch-warp-force.svg",
+            "plots/stretch-warp-residual.svg",
+            "plots/stretch-warp-shape.svg",
             "plots/stretch-warp-stress.svg",
             "plots/stretch-weft-force.svg",
+            "plots/stretch-weft-residual.svg",
+            "plots/stretch-weft-shape.svg",
             "plots/stretch-weft-stress.svg",
+            "report.html",
+            "report.json",
             "residuals.csv"
         ]
     );
@@ -108,7 +117,7 @@ fn the_bytes_are_the_same_on_one_and_on_two_threads() {
         };
         files(&out).into_iter().map(content).collect::<Vec<_>>()
     });
-    assert_eq!(contents[0].len(), 3 * 9);
+    assert_eq!(contents[0].len(), 3 * 16 + 2);
     assert!(contents[0] == contents[1]);
 }
 

@@ -25,7 +25,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet};
 use crate::incremental::{self, FitReport, Stage};
 use crate::knowledge::Knowledge;
-use crate::prediction::predict;
+use crate::prediction::{Prediction, predict};
 use crate::report::StageReport;
 use crate::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Curves, Model};
@@ -76,6 +76,18 @@ pub fn contestants(base: &Settings) -> Vec<Settings> {
     Model::ALL.into_iter().flat_map(of_model).collect()
 }
 
+/// One model in one variant: its figures, and all that they sum up.
+#[must_use]
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// The figures.
+    pub row: Row,
+    /// What the fit found.
+    pub report: FitReport,
+    /// How it meets the sequences left for validation, if there are any.
+    pub validation: Option<Prediction>,
+}
+
 /// Fits one model in one variant and predicts what it did not see.
 ///
 /// # Errors
@@ -85,28 +97,30 @@ pub fn run(
     settings: &Settings,
     leave_one_out: bool,
     watch: &mut Watch<'_>,
-) -> Result<Row> {
+) -> Result<Entry> {
     let report = incremental::fit(set, &Stage::ALL, &Knowledge::default(), settings, watch)?;
     let left_out = match leave_one_out {
         true => leave_out::each(set, &report, settings, watch),
         false => Vec::new(),
     };
+    let validation = validation(set, report.curves(), settings, watch)?;
     let sum = |count: fn(&StageReport) -> usize| report.stages.iter().map(count).sum();
-    Ok(Row {
+    let row = Row {
         model: settings.model,
         variant: settings.variant,
         failure: None,
         parameters: observed(&report).map(|stage| stage.curve.curve.len()).sum(),
         missing: missing(&report),
         fit: Distance::of_fit(set, &report),
-        validation: validation(set, report.curves(), settings, watch)?,
+        validation: validation.as_ref().map(|found| Distance::of_prediction(set, found)),
         leave_one_out: distance::root_mean_square(left_out.iter().filter_map(LeftOut::relative)),
         left_out,
         equilibria: sum(|stage| stage.counters.equilibria),
         factorisations: sum(|stage| stage.counters.factorisations),
         seconds: report.stages.iter().map(|stage| stage.seconds).sum(),
         converged: report.converged(),
-    })
+    };
+    Ok(Entry { row, report, validation })
 }
 
 impl Row {
@@ -153,12 +167,12 @@ fn validation(
     curves: &Curves,
     settings: &Settings,
     watch: &Watch<'_>,
-) -> Result<Option<Distance>> {
+) -> Result<Option<Prediction>> {
     let any = set.sequences.iter().any(|sequence| VALIDATION.contains(&sequence.kind));
     if !any || !curves.components().any(Component::is_stretch) {
         return Ok(None);
     }
-    Ok(Some(Distance::of_prediction(set, &predict(set, &VALIDATION, curves, settings, watch)?)))
+    Ok(Some(predict(set, &VALIDATION, curves, settings, watch)?))
 }
 
 fn observed(report: &FitReport) -> impl Iterator<Item = &StageReport> {

@@ -11,7 +11,7 @@
 use crate::error::Result;
 use crate::frame::{Kind, MeasurementSet};
 use crate::knowledge::Knowledge;
-use crate::report::{SequenceReport, StageReport};
+use crate::report::{Level, SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
 use cloth_sim::material::{Component, Curves, Model};
 use serde::{Deserialize, Serialize};
@@ -109,6 +109,12 @@ impl FitReport {
             }
         }
         last
+    }
+
+    /// The residual after every step tried for a stage's curve, over all passes and numbers of control points, N or m.
+    pub fn course(&self, stage: &StageReport) -> Vec<f64> {
+        let passes = self.stages.iter().filter(|pass| pass.components == stage.components);
+        passes.flat_map(|pass| &pass.levels).flat_map(Level::course).collect()
     }
 
     /// The curves that were observed or given.

@@ -40,6 +40,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Fabric, Frame, MeasurementSet, Sequence};
 use crate::store::{replace_folder, write_file};
 use nalgebra::Vector3;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -52,6 +53,15 @@ const SEQUENCE: [&str; 7] =
     ["test.toml", "mesh.obj", "positions.npy", "frames", "clips.csv", "forces.csv", "frames.csv"];
 /// Other files of these kinds are misspelt rather than meant for someone else.
 const DATA: [&str; 5] = [".toml", ".obj", ".npy", ".csv", ".ply"];
+
+/// Reads a JSON file of a version that this program writes.
+///
+/// # Errors
+/// A file that cannot be read; no JSON, or another version; a key unknown, missing or twice; a value of another type. All
+/// with line and key.
+pub fn read_json<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<T> {
+    json_file::parse_version(path, &read_text(path)?, schema)
+}
 
 /// Reads a fabric sample with all its sequences, ordered by name.
 ///

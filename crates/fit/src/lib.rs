@@ -37,6 +37,7 @@
 //! | [`measure`], [`validation`] | a frame summed up in one figure; motions and samples that no fit saw |
 //! | [`material`] | what a simulation must know of a fabric, from a fit or from hand
 //! | [`interventions`] | what was clamped, extrapolated, left out or tried again on the way, counted |
+//! | [`shapes`] | every frame's shape, simulated beside seen, to look at |
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //! | [`error`] | what is wrong with an input, and where |
 //!
@@ -99,6 +100,7 @@ pub mod report;
 pub mod result;
 pub mod rig;
 pub mod robust;
+pub mod shapes;
 pub mod simulation;
 pub mod specimen;
 pub mod stage;

@@ -11,8 +11,8 @@ pub use entry::{Correlation, CurveEntry, ResidualEntry};
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
-use crate::io::json_file::{parse, unique};
-use crate::io::{read_text, shown};
+use crate::io::json_file::{parse_version, unique};
+use crate::io::read_text;
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -126,12 +126,7 @@ impl MaterialFile {
     /// A file that cannot be read, or is no such file, with line and field.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
-        // The version first: another one may well have other fields.
-        let value: serde_json::Value = parse(path, &text)?;
-        if value["schema"] != SCHEMA {
-            return Err(Error::input(path, None, "schema", shown(&value["schema"].to_string()), SCHEMA));
-        }
-        let file: Self = parse(path, &text)?;
+        let file: Self = parse_version(path, &text, SCHEMA)?;
         file.named_curves().map_err(|defect| defect.at(path, &text))?;
         Ok(file)
     }

@@ -3,6 +3,7 @@
 use crate::frame::{Kind, Phase};
 use crate::gauss_newton::Iteration;
 use crate::interventions::Interventions;
+use crate::shapes::Shapes;
 use crate::simulation::{Counters, DroppedFrame, Objective};
 use crate::stage::Variant;
 use crate::uncertainty::Scatter;
@@ -30,14 +31,26 @@ pub struct CurveReport {
     pub share_visited: f64,
     /// 201 rows over the visited range. Bending: over curvature.
     pub samples: Vec<Sample>,
+    /// How often strains were met, over the visited range. Bending: over curvature.
+    pub histogram: Histogram,
     /// How many directions of the control values the data see.
     pub rank: usize,
     /// Control points that no frame sees.
     pub unseen: Vec<usize>,
-    /// Control values correlated above 0.95.
-    pub correlated: Vec<(usize, usize, f64)>,
+    /// Correlation of each control value with each; `None` with one that the data do not see.
+    pub correlations: Vec<Vec<Option<f64>>>,
     /// How many of the curve's constraints hold the solution.
     pub active_constraints: usize,
+}
+
+impl CurveReport {
+    /// Pairs of control values whose correlation exceeds 0.95 in size.
+    pub fn correlated(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let row = |(j, row): (usize, &Vec<Option<f64>>)| {
+            row[..j].iter().enumerate().filter_map(|(i, c)| Some((i, j, (*c)?))).collect::<Vec<_>>()
+        };
+        self.correlations.iter().enumerate().flat_map(row).filter(|(_, _, c)| c.abs() > 0.95)
+    }
 }
 
 /// One row of a curve file, or a control point in the same terms.
@@ -51,6 +64,15 @@ pub struct Sample {
     pub stress: f64,
     /// 95 % band of the stress or moment; `None` where no frame sees it.
     pub band: Option<[f64; 2]>,
+}
+
+/// Which strains the equilibria of all frames have, by the sheet's area.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Histogram {
+    /// Where the first bin begins and the last one ends.
+    pub range: [f64; 2],
+    /// Share of the area in each bin, all as wide; what lies outside the range is in none.
+    pub shares: Vec<f64>,
 }
 
 /// How a sequence was met.
@@ -83,6 +105,8 @@ pub struct SequenceReport {
     pub hysteresis: Option<Hysteresis>,
     /// Every force component of every frame.
     pub forces: Vec<ForceRow>,
+    /// Every frame's shape.
+    pub shapes: Shapes,
 }
 
 /// Loading against unloading.
@@ -133,6 +157,13 @@ pub struct Level {
 }
 
 impl Level {
+    /// The residual after every step tried, N or m: sums of squares give them in proportion to that of the end.
+    pub fn course(&self) -> impl Iterator<Item = f64> + '_ {
+        let last = self.iterations.last().map_or(1.0, |step| step.sum_of_squares);
+        let share = move |squares: f64| if last > 0.0 { (squares / last).sqrt() } else { 1.0 };
+        self.iterations.iter().map(move |step| self.rms * share(step.sum_of_squares))
+    }
+
     /// Adds a later fit with as many control points.
     pub(crate) fn go_on(&mut self, later: &Self) {
         let done = self.iterations.len();

@@ -56,17 +56,22 @@ pub fn check_output(folder: &Path) -> Result<()> {
         ("simulation.json", &SIMULATED),
     ];
     let is_other = others.iter().any(|(main, all)| holds(folder, main, all));
-    if is_other || is_result(folder) || entries.iter().all(is_model) {
+    // Several models share a page.
+    let of_models =
+        |entry: &PathBuf| is_model(entry) || ["report.json", "report.html"].contains(&&name(entry)[..]);
+    let are_models = entries.iter().all(of_models) && (entries.is_empty() || entries.iter().any(is_model));
+    if is_other || is_result(folder) || are_models {
         return Ok(());
     }
     refuse("a folder with other things in it")
 }
 
 /// What stands in a result folder.
-const WRITTEN: [&str; 5] = ["material.json", "curves", "plots", "residuals.csv", "forces.csv"];
+const WRITTEN: [&str; 7] =
+    ["material.json", "curves", "plots", "residuals.csv", "forces.csv", "report.json", "report.html"];
 
 /// What stands in the folder of a [comparison](crate::compare).
-const COMPARED: [&str; 2] = ["compare.csv", "compare.json"];
+const COMPARED: [&str; 4] = ["compare.csv", "compare.json", "report.json", "report.html"];
 
 /// What stands in the folder of a [validation](crate::validation).
 const VALIDATED: [&str; 5] = ["validation.json", "validation.csv", "measures.csv", "forces.csv", "plots"];

@@ -236,20 +236,30 @@ impl<'a> Simulation<'a> {
     /// The 1st and 99th percentile of the fitted components' strains over all states; of their size where the curve is odd
     /// and bends either way alike.
     pub fn visited(&self) -> [f64; 2] {
-        let bends = self.task.fitted.iter().any(|component| component.is_bending());
-        let mut strains: Vec<f64> = self
-            .settled()
-            .flat_map(|s| {
-                self.task.fitted.iter().flat_map(move |&c| s.replica.cloth(s.frame).strains(c, s.x))
-            })
-            .map(|[strain, _]| if bends { strain.abs() } else { strain })
-            .collect();
+        let bends = self.bends();
+        let mut strains: Vec<f64> = self.strains().into_iter().map(|[strain, _]| strain).collect();
         strains.sort_by(f64::total_cmp);
         let percentile = |share: f64| {
             let place = share * strains.len().saturating_sub(1) as f64;
             strains.get(place.round() as usize).copied().unwrap_or(0.0)
         };
         [if bends { 0.0 } else { percentile(0.01) }, percentile(0.99)]
+    }
+
+    /// The fitted components' strains over all states, each with the area, m², that it stands for; of bending their sizes.
+    pub fn strains(&self) -> Vec<[f64; 2]> {
+        let bends = self.bends();
+        let sized = |[strain, area]: [f64; 2]| [if bends { strain.abs() } else { strain }, area];
+        self.settled()
+            .flat_map(|s| {
+                self.task.fitted.iter().flat_map(move |&c| s.replica.cloth(s.frame).strains(c, s.x))
+            })
+            .map(sized)
+            .collect()
+    }
+
+    fn bends(&self) -> bool {
+        self.task.fitted.iter().any(|component| component.is_bending())
     }
 
     /// The largest strain that control points should reach.

@@ -2,7 +2,8 @@
 
 use crate::frame::Phase;
 use crate::refine::Growth;
-use crate::report::{CurveReport, ForceRow, Hysteresis, Sample, SequenceReport};
+use crate::report::{CurveReport, ForceRow, Histogram, Hysteresis, Sample, SequenceReport};
+use crate::shapes::Shapes;
 use crate::simulation::{Settled, Simulation};
 use crate::uncertainty::Covariance;
 use cloth_sim::bending::Rolled;
@@ -27,11 +28,12 @@ pub(crate) fn curve_report(
         observed,
         points: curve.strains().iter().map(|&strain| rows.at(rows.place(strain))).collect(),
         samples: rows.over(visited),
+        histogram: rows.histogram(visited, &simulation.strains()),
         deviations: covariance.standard_deviations(),
         half_bands: covariance.half_bands(),
         rank: covariance.rank,
         unseen: (0..curve.len()).filter(|&i| covariance.unseen.row(i).norm() > 1e-6).collect(),
-        correlated: covariance.correlated(),
+        correlations: covariance.correlations(),
         active_constraints: slack.iter().filter(|s| s.abs() <= 1e-9 * outcome.point.amax()).count(),
         visited,
         share_visited: if last > 0.0 { (visited[1].max(-visited[0]) / last).min(1.0) } else { 1.0 },
@@ -48,6 +50,9 @@ fn rolled(simulation: &Simulation<'_>) -> Option<Rolled> {
 /// Rows of a curve file.
 const SAMPLES: usize = 201;
 
+/// Bins of a histogram.
+const BINS: usize = 40;
+
 /// A curve in the terms of its file: over strain, or over curvature.
 struct Rows<'a> {
     curve: &'a StiffnessCurve,
@@ -60,6 +65,23 @@ impl Rows<'_> {
     fn over(&self, visited: [f64; 2]) -> Vec<Sample> {
         let [low, high] = visited.map(|strain| self.place(strain));
         (0..SAMPLES).map(|i| self.at(low + (high - low) * i as f64 / (SAMPLES - 1) as f64)).collect()
+    }
+
+    /// How often the strains within a range were met.
+    ///
+    /// * `strains` — each with the area it stands for
+    fn histogram(&self, visited: [f64; 2], strains: &[[f64; 2]]) -> Histogram {
+        let range @ [low, high] = visited.map(|strain| self.place(strain));
+        let all: f64 = strains.iter().map(|[_, area]| area).sum();
+        let mut shares = vec![0.0; BINS];
+        for [strain, area] in strains {
+            let bin = (BINS as f64 * (self.place(*strain) - low) / (high - low)).floor();
+            // What is not finite is in no bin either.
+            if (0.0..BINS as f64).contains(&bin) {
+                shares[bin as usize] += area / all;
+            }
+        }
+        Histogram { range, shares }
     }
 
     /// The strain, or the curvature of it.
@@ -101,7 +123,8 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     let mut positions: Vec<(f64, usize)> = Vec::new();
     // Frames with the distance of their shape, and the largest overhang, where shapes alone are compared.
     let mut shapes: Vec<(Vec<(usize, f64)>, f64)> = Vec::new();
-    for (Settled { replica, frame, x, multi_stable }, simulated) in simulation.settled().zip(forces) {
+    for (settled, simulated) in simulation.settled().zip(forces) {
+        let Settled { replica, frame, x, multi_stable } = settled;
         let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
             let grid = &replica.specimen.grid;
             reports.push(SequenceReport {
@@ -118,6 +141,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 multi_stable: Vec::new(),
                 hysteresis: None,
                 forces: Vec::new(),
+                shapes: Shapes::of(replica),
             });
             sums.push([0.0; 4]);
             positions.push((0.0, 0));
@@ -126,6 +150,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
         });
         let report = &mut reports[at];
         report.frames += 1;
+        report.shapes.push(&settled);
         if multi_stable {
             report.multi_stable.push(frame.index);
         }

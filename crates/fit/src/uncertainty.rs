@@ -214,18 +214,14 @@ impl Covariance {
         self.standard_deviations().into_iter().map(band).collect()
     }
 
-    /// Pairs of control values whose correlation exceeds 0.95 in size.
-    pub fn correlated(&self) -> Vec<(usize, usize, f64)> {
-        let mut pairs = Vec::new();
-        for j in 0..self.matrix.ncols() {
-            for i in 0..j {
-                let correlation = self.matrix[(i, j)] / (self.matrix[(i, i)] * self.matrix[(j, j)]).sqrt();
-                if correlation.abs() > 0.95 {
-                    pairs.push((i, j, correlation));
-                }
-            }
-        }
-        pairs
+    /// Correlation of each control value with each; `None` with one that the data do not see.
+    pub fn correlations(&self) -> Vec<Vec<Option<f64>>> {
+        let correlation = |i: usize, j: usize| {
+            let size = (self.matrix[(i, i)] * self.matrix[(j, j)]).sqrt();
+            (size > 0.0).then(|| self.matrix[(i, j)] / size)
+        };
+        let all = 0..self.matrix.ncols();
+        all.clone().map(|i| all.clone().map(|j| correlation(i, j)).collect()).collect()
     }
 }
 

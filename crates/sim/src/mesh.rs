@@ -31,7 +31,7 @@ pub enum Diagonals {
 
 /// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`. Crossed cells have
 /// their centres after all of these, row by row.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
     /// Nodes along x, at least 2.
     pub columns: usize,

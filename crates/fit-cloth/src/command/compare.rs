@@ -3,12 +3,14 @@
 use super::{Outcome, fit, program, recalled, tell, warn};
 use crate::failure::Failure;
 use crate::options::{CurveFlags, SetFlags, Telling};
+use crate::page::{Fit, Frames, Page};
 use crate::progress::Progress;
 use crate::text;
 use clap::Args;
-use cloth_fit::compare::{self, Comparison, Row};
+use cloth_fit::compare::{self, Comparison, Entry, Row};
 use cloth_fit::incremental::Stage;
 use cloth_fit::store::write_file;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::io::Write;
 
@@ -17,8 +19,9 @@ Example:
   fit-cloth compare fixtures/cotton-denim --nodes 9x9 --out out
   fit-cloth compare fixtures/cotton-denim --nodes 9x9 --leave-one-out --out out
 
-Writes compare.csv and compare.json, best first. What ranks: the residual on sequences of kind complex-shear and
-corner-pull, which no fit sees; else that on sequences left out one at a time; else that of the fit.
+Writes compare.csv and compare.json, best first, and report.html with all models on the same plots. What ranks: the
+residual on sequences of kind complex-shear and corner-pull, which no fit sees; else that on sequences left out one at
+a time; else that of the fit.
 Stopped by Ctrl-C or otherwise, the same command goes on after the models and variants that were finished.";
 
 /// `fit-cloth compare`.
@@ -34,6 +37,16 @@ pub struct CompareOptions {
     /// Fit again without each sequence in turn, where others show its curves, and predict it
     #[arg(long)]
     pub leave_one_out: bool,
+    /// Write no report.html
+    #[arg(long)]
+    pub no_report: bool,
+}
+
+/// What is kept of a contestant: its figures, and what the page shows of it.
+#[derive(Serialize, Deserialize)]
+struct Shown {
+    row: Row,
+    fit: Option<Fit>,
 }
 
 /// Fits, predicts and ranks.
@@ -48,31 +61,40 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
         return Err(fit::nothing(&options.on.set, &set, &kinds));
     }
     let contestants = compare::contestants(&options.how.settings(&options.on));
-    let key = (program(), "compare", options.leave_one_out, format!("{contestants:?}"), &set);
-    let name = |row: &Row| format!("{}, {}", row.model, row.variant);
-    let finished: Vec<Row> = recalled(out.recall(&key)?, telling, name);
-    let mut rows = Vec::new();
+    let key =
+        (program(), "compare", options.leave_one_out, options.no_report, format!("{contestants:?}"), &set);
+    let name = |entry: &Shown| format!("{}, {}", entry.row.model, entry.row.variant);
+    let mut finished: Vec<Shown> = recalled(out.recall(&key)?, telling, name);
     let mut refused = None;
     for settings in contestants {
-        let is_same = |row: &&Row| (row.model, row.variant) == (settings.model, settings.variant);
-        if let Some(row) = finished.iter().find(is_same) {
-            rows.push(row.clone());
+        if finished
+            .iter()
+            .any(|Shown { row, .. }| (row.model, row.variant) == (settings.model, settings.variant))
+        {
             continue;
         }
         let name = format!("{}, {}", settings.model, settings.variant);
         let progress = Progress::new(&name, !telling.quiet);
-        let row = compare::run(&set, &settings, options.leave_one_out, &mut progress.watch());
+        let entry = compare::run(&set, &settings, options.leave_one_out, &mut progress.watch());
         progress.finish();
-        if let Ok(row) = &row {
-            out.keep(row)?;
-        }
-        rows.push(row.unwrap_or_else(|error| {
-            let row = Row::failed(&settings, &error);
-            warn(telling, &format!("{name}: {error}"));
-            refused.get_or_insert(error);
-            row
-        }));
+        finished.push(match entry {
+            Ok(Entry { row, report, validation }) => {
+                let fit = || Fit::new(&set, &report, validation.as_ref(), Frames::LeftOut);
+                let shown = Shown { row, fit: (!options.no_report).then(fit) };
+                out.keep(&shown)?;
+                shown
+            }
+            Err(error) => {
+                warn(telling, &format!("{name}: {error}"));
+                let row = Row::failed(&settings, &error);
+                refused.get_or_insert(error);
+                Shown { row, fit: None }
+            }
+        });
     }
+    let (rows, fits): (Vec<Row>, Vec<Option<Fit>>) =
+        finished.into_iter().map(|Shown { row, fit }| (row, fit)).unzip();
+    let fits: Vec<Fit> = fits.into_iter().flatten().collect();
     // What none of them can fit is bad input.
     if let Some(error) = refused.filter(|_| rows.iter().all(|row| row.failure.is_some())) {
         return Err(error.into());
@@ -81,7 +103,11 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
     let json = comparison.to_json();
     out.replace(|temporary| {
         write_file(&temporary.join("compare.csv"), comparison.to_csv().as_bytes())?;
-        write_file(&temporary.join("compare.json"), json.as_bytes())
+        write_file(&temporary.join("compare.json"), json.as_bytes())?;
+        match fits.is_empty() {
+            true => Ok(()),
+            false => Page::new(&set.fabric.name, fits, Some(text::ranking(&comparison))).write(temporary),
+        }
     })?;
     let text = format!("{}\nWritten to {}", text::comparison(&comparison), out.path().display());
     tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;

@@ -5,6 +5,7 @@ use super::{Outcome, program, recalled, warn};
 use crate::failure::Failure;
 use crate::options::{FitFlags, Telling, refuse_within};
 use crate::output::Output;
+use crate::page::{Fit, Frames, Page};
 use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::text;
@@ -54,7 +55,7 @@ pub fn run(
     if results.is_empty() {
         return failures.into_iter().next().map_or(Ok(Outcome::Done), |(_, failure)| Err(failure));
     }
-    write(&out, models.len() > 1, &results)?;
+    write(&out, &set, models.len() > 1, !flags.no_report, &results)?;
     // All is on disk before the first word: a reader who has read enough must not cost the result.
     for (model, failure) in &failures {
         warn(telling, &format!("{model} has no result: {}", failure.in_words()));
@@ -167,16 +168,29 @@ pub(super) fn nothing(path: &Path, set: &MeasurementSet, kinds: &[Kind]) -> Fail
     Error::input(path, None, "kind", found, expected).into()
 }
 
-fn write(out: &Output, several: bool, results: &[Fitted]) -> Result<(), Failure> {
+/// * `several` — models: each has a folder of its own, and all share a page
+/// * `paged` — whether there is a page
+fn write(
+    out: &Output,
+    set: &MeasurementSet,
+    several: bool,
+    paged: bool,
+    results: &[Fitted],
+) -> Result<(), Failure> {
     out.replace(|temporary| {
-        results.iter().try_for_each(|Fitted { report, material }| {
+        for Fitted { report, material } in results {
             let folder = match several {
                 true => temporary.join(report.model.to_string()),
                 false => temporary.to_path_buf(),
             };
             write_result(&folder, report, material)?;
-            write_plots(&folder, report)
-        })
+            write_plots(&folder, set, report)?;
+        }
+        if paged {
+            let fit = |fitted: &Fitted| Fit::new(set, &fitted.report, None, Frames::Shown);
+            Page::new(&set.fabric.name, results.iter().map(fit).collect(), None).write(temporary)?;
+        }
+        Ok(())
     })?;
     Ok(())
 }

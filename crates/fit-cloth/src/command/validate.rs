@@ -69,7 +69,7 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     let mut json = String::new();
     out.replace(|temporary| {
         json = write_validation(temporary, &set, &material, &validation)?;
-        write_validation_plots(temporary, material.model, &validation)
+        write_validation_plots(temporary, &set, material.model, &validation)
     })?;
     let text = text::validation(&set, &material, &validation);
     let text = format!("{text}\nWritten to {}", out.path().display());

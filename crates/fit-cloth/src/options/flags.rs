@@ -68,6 +68,9 @@ pub struct FitFlags {
     /// A material.json whose curves are taken as exact: what it has is not fitted, but for what the command is about
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
+    /// Write no report.html
+    #[arg(long)]
+    pub no_report: bool,
     /// Take curves from --known that are not stable, such as those of --constraints control-points
     #[arg(long, requires = "known")]
     pub allow_unstable: bool,

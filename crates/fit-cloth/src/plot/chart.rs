@@ -1,22 +1,42 @@
-//! What all figures have in common: paper, axes, legend.
+//! What figures with axes have in common: paper, axes, legend.
 
-use plotters::coord::combinators::LogCoord;
-use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
+use super::series::{self, Mark, Series};
+use super::writing::{self, Area, INK, TEXT, TITLE, signed};
+use plotters::coord::combinators::{LogCoord, WithKeyPoints};
+use plotters::coord::ranged1d::{AsRangedCoord, BoldPoints, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use std::error::Error;
 use std::ops::Range;
 
 /// Size of a figure: twice what it is shown at, since lines are drawn through whole pixels.
 const SIZE: (u32, u32) = (1280, 840);
+/// Of one with two panels.
+const TALL: (u32, u32) = (1280, 960);
+/// Around everything; on the right half of a number stands beyond the axis.
+const MARGIN: i32 = 28;
+const RIGHT: i32 = 56;
+/// For the numbers and names of the axes.
+const BELOW: i32 = 88;
+const BESIDE: i32 = 150;
+/// Marks below an axis; numbers begin twice as far below.
+const TICK: i32 = 8;
+/// How many numbers an axis has at most.
+const NUMBERS: [usize; 2] = [9, 7];
+/// Share of a figure's height that a panel beneath it takes, its axis with it.
+const BENEATH: f64 = 0.42;
+/// Least width of what lies between axes that are to scale, in pixels.
+const NARROWEST: f64 = 560.0;
 
 /// What a drawing may fail with.
 pub(super) type Drawn<T> = Result<T, Box<dyn Error>>;
 
-type Context<'a, 'b, X> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, X>>;
+/// Where series are drawn.
+pub(super) type Context<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 
 /// How the numbers along an axis are told.
-type Label<'l> = &'l dyn Fn(&f64) -> String;
+type Label<'l> = Box<dyn Fn(&f64) -> String + 'l>;
 
 /// Axes with their names and extents.
 pub(super) struct Axes<'t> {
@@ -25,135 +45,240 @@ pub(super) struct Axes<'t> {
     pub(super) y: (&'t str, Range<f64>),
 }
 
-/// A figure in the making; both its axes are of one kind.
-pub(super) struct Chart<'a, 'b: 'a, X: Ranged<ValueType = f64> = RangedCoordf64>(Context<'a, 'b, X>);
-
-/// One with logarithmic axes.
-pub(super) type LogChart<'a, 'b> = Chart<'a, 'b, LogCoord<f64>>;
+/// What is to be drawn between axes, the lowest first.
+#[derive(Default)]
+pub(super) struct Chart(Vec<Series>);
 
 /// Draws a figure.
 ///
 /// # Errors
 /// Extents that no axis can have.
-pub(super) fn figure(axes: Axes<'_>, series: impl FnOnce(&mut Chart<'_, '_>) -> Drawn<()>) -> Drawn<String> {
-    let largest = axes.y.1.start.abs().max(axes.y.1.end.abs());
-    // Moments are small numbers.
-    let small = |value: &f64| if *value == 0.0 { "0".into() } else { format!("{value:.1e}") };
-    let label: Option<Label<'_>> = if largest < 1e-2 { Some(&small) } else { None };
-    let (x, y) = (axes.x.1.clone(), axes.y.1.clone());
-    draw(&axes, [x, y], [None, label], SeriesLabelPosition::UpperLeft, series)
+pub(super) fn figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
+    let chart = Chart::filled(fill);
+    draw(axes.title, SIZE, &[&chart], |area| linear(area, axes.x, axes.y, BELOW, &chart))
 }
 
-/// Draws a figure with logarithmic axes; the legend has its place above right.
+/// Draws a figure in which a metre along one axis is as long as along the other.
+///
+/// # Errors
+/// As [`figure`].
+pub(super) fn figure_to_scale(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
+    let chart = Chart::filled(fill);
+    let (mut x, mut y) = (axes.x, axes.y);
+    let length = |extent: &Range<f64>| extent.end - extent.start;
+    // As high as others, and as wide as that asks for; a second row of the legend is not expected.
+    let beside = BESIDE + MARGIN + RIGHT;
+    let most = f64::from(SIZE.0 as i32 - beside);
+    let inner = SIZE.1 as i32 - BELOW - MARGIN - MARGIN / 2 - 2 * MARGIN - TITLE - series::ROW;
+    let wide = (f64::from(inner) * length(&x.1) / length(&y.1)).clamp(NARROWEST, most);
+    let size = (wide as u32 + beside as u32, SIZE.1);
+    let pixel = (length(&x.1) / wide).max(length(&y.1) / f64::from(inner));
+    for (extent, pixels) in [(&mut x.1, wide), (&mut y.1, f64::from(inner))] {
+        let more = 0.5 * (pixel * pixels - length(extent));
+        *extent = extent.start - more..extent.end + more;
+    }
+    draw(axes.title, size, &[&chart], |area| linear(area, x, y, BELOW, &chart))
+}
+
+/// Draws a figure with a second panel beneath it, over the same x.
+///
+/// # Errors
+/// As [`figure`].
+pub(super) fn figure_over(
+    axes: Axes<'_>,
+    fill: impl FnOnce(&mut Chart),
+    beneath: (&str, Range<f64>),
+    fill_beneath: impl FnOnce(&mut Chart),
+) -> Drawn<String> {
+    let charts = [Chart::filled(fill), Chart::filled(fill_beneath)];
+    draw(axes.title, TALL, &[&charts[0], &charts[1]], |area| {
+        let (_, high) = area.dim_in_pixel();
+        let (upper, lower) = area.split_vertically((f64::from(high) * (1.0 - BENEATH)) as i32);
+        // The numbers of both are those of the lower.
+        linear(&upper, ("", axes.x.1.clone()), axes.y, 0, &charts[0])?;
+        linear(&lower, axes.x, beneath, BELOW, &charts[1])
+    })
+}
+
+/// Draws a figure with logarithmic axes.
 ///
 /// # Errors
 /// Extents that no such axis can have.
-pub(super) fn log_figure(
-    axes: Axes<'_>,
-    series: impl FnOnce(&mut LogChart<'_, '_>) -> Drawn<()>,
-) -> Drawn<String> {
-    // Of every decade 1, 2 and 5.
-    let power = |value: &f64| match value.abs() {
-        size if !['1', '2', '5'].contains(&format!("{size:e}").chars().next().unwrap_or(' ')) => {
-            String::new()
-        }
-        size if (1e-3..1e4).contains(&size) => format!("{value}"),
-        _ => format!("{value:e}"),
-    };
-    let (x, y) = (axes.x.1.clone().log_scale(), axes.y.1.clone().log_scale());
-    draw(&axes, [x, y], [Some(&power), Some(&power)], SeriesLabelPosition::UpperRight, series)
+pub(super) fn log_figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
+    let chart = Chart::filled(fill);
+    draw(axes.title, SIZE, &[&chart], |area| {
+        let extents = (decades(axes.x.1), decades(axes.y.1));
+        between(area, extents, [axes.x.0, axes.y.0], [Box::new(power), Box::new(power)], BELOW, &chart)
+    })
 }
 
-fn draw<X, R>(
-    axes: &Axes<'_>,
-    extents: [R; 2],
-    labels: [Option<Label<'_>>; 2],
-    legend: SeriesLabelPosition,
-    series: impl FnOnce(&mut Chart<'_, '_, X>) -> Drawn<()>,
-) -> Drawn<String>
-where
-    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
-    R: AsRangedCoord<CoordDescType = X, Value = f64>,
-{
+/// Draws a figure of which only y is logarithmic.
+///
+/// # Errors
+/// Extents that no such axis can have.
+pub(super) fn half_log_figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
+    let chart = Chart::filled(fill);
+    draw(axes.title, SIZE, &[&chart], |area| {
+        let labels = [numbers(&axes.x.1, NUMBERS[0]), Box::new(power)];
+        let extents = (axes.x.1, decades(axes.y.1));
+        between(area, extents, [axes.x.0, axes.y.0], labels, BELOW, &chart)
+    })
+}
+
+/// Both axes are linear.
+///
+/// * `below` — height left for numbers and name of x, in pixels; 0 for none
+fn linear(
+    area: &Area<'_>,
+    x: (&str, Range<f64>),
+    y: (&str, Range<f64>),
+    below: i32,
+    chart: &Chart,
+) -> Drawn<()> {
+    let labels = [numbers(&x.1, NUMBERS[0]), numbers(&y.1, NUMBERS[1])];
+    between(area, (x.1, y.1), [x.0, y.0], labels, below, chart)
+}
+
+/// Paper, title and legend; `rest` draws on what is left.
+fn draw(
+    title: &str,
+    size: (u32, u32),
+    charts: &[&Chart],
+    rest: impl FnOnce(&Area<'_>) -> Drawn<()>,
+) -> Drawn<String> {
     let mut figure = String::new();
     {
-        let area = SVGBackend::with_string(&mut figure, SIZE).into_drawing_area();
+        let area = SVGBackend::with_string(&mut figure, size).into_drawing_area();
         area.fill(&WHITE)?;
-        let [x, y] = extents;
-        let context = ChartBuilder::on(&area)
-            .caption(axes.title, ("sans-serif", 36))
-            .margin(28)
-            .x_label_area_size(88)
-            .y_label_area_size(150)
-            .build_cartesian_2d(x, y)?;
-        let mut chart = Chart(context);
-        chart.mesh([axes.x.0, axes.y.0], labels)?;
-        series(&mut chart)?;
-        chart.legend(legend)?;
+        let wide = size.0 as i32 - 2 * MARGIN;
+        writing::write_within(&area, wide, title, (MARGIN, MARGIN + TITLE / 2), (TITLE, HPos::Left, INK))?;
+        let named: Vec<&Series> = charts.iter().flat_map(|chart| &chart.0).collect();
+        let from = (MARGIN, 2 * MARGIN + TITLE);
+        let rows = series::legend(&area, &named, from, size.0 as i32 - MARGIN)?;
+        let (_, below) = area.split_vertically(from.1 + rows);
+        rest(&below)?;
         area.present()?;
     }
-    Ok(figure)
+    // Opaque is what is drawn anyway.
+    Ok(figure.replace(" opacity=\"1\"", ""))
 }
 
-impl<'a, 'b: 'a, X: Ranged<ValueType = f64> + ValueFormatter<f64>> Chart<'a, 'b, X> {
-    fn mesh(&mut self, names: [&str; 2], labels: [Option<Label<'_>>; 2]) -> Drawn<()> {
-        let mut mesh = self.0.configure_mesh();
-        mesh.x_desc(names[0]).y_desc(names[1]).light_line_style(WHITE).label_style(("sans-serif", 28));
-        if let Some(label) = labels[0] {
-            mesh.x_label_formatter(label);
-        }
-        if let Some(label) = labels[1] {
-            mesh.y_label_formatter(label);
-        }
-        Ok(mesh.draw()?)
+/// Axes of any kind, and a chart between them.
+fn between<R, S, X, Y>(
+    area: &Area<'_>,
+    (x, y): (R, S),
+    [x_name, y_name]: [&str; 2],
+    [x_label, y_label]: [Label<'_>; 2],
+    below: i32,
+    chart: &Chart,
+) -> Drawn<()>
+where
+    R: AsRangedCoord<CoordDescType = X, Value = f64>,
+    S: AsRangedCoord<CoordDescType = Y, Value = f64>,
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let mut context = ChartBuilder::on(area)
+        .margin(MARGIN)
+        .margin_right(RIGHT)
+        .margin_bottom(if below > 0 { MARGIN / 2 } else { 0 })
+        .x_label_area_size(below)
+        .y_label_area_size(BESIDE)
+        .build_cartesian_2d(x, y)?;
+    let mut mesh = context.configure_mesh();
+    mesh.x_desc(x_name).y_desc(y_name).x_label_formatter(&x_label).y_label_formatter(&y_label);
+    mesh.x_labels(NUMBERS[0]).y_labels(NUMBERS[1]).light_line_style(WHITE);
+    // Numbers of both axes meet in the corner.
+    mesh.set_tick_mark_size(LabelAreaPosition::Bottom, TICK);
+    mesh.label_style(("sans-serif", TEXT).into_font().color(&INK)).draw()?;
+    chart.0.iter().try_for_each(|series| series.draw(&mut context))
+}
+
+/// With as many decimals as tell an axis's numbers apart; powers where they are very small or large.
+fn numbers(extent: &Range<f64>, at_most: usize) -> Label<'static> {
+    let largest = extent.start.abs().max(extent.end.abs());
+    if !(1e-3..1e6).contains(&largest) {
+        return Box::new(|value| if *value == 0.0 { "0".into() } else { signed(format!("{value:.1e}")) });
+    }
+    let marks = RangedCoordf64::from(extent.clone()).key_points(BoldPoints(at_most));
+    let told = |decimals: &i32| {
+        let unit = 10f64.powi(*decimals);
+        marks.iter().all(|mark| (mark * unit - (mark * unit).round()).abs() < 1e-6 * largest * unit)
+    };
+    let decimals = (0..9).find(told).unwrap_or(9) as usize;
+    // What rounds to zero has no sign.
+    Box::new(move |value| {
+        let value = if value.abs() < 1e-9 * largest { 0.0 } else { *value };
+        signed(format!("{value:.decimals$}"))
+    })
+}
+
+/// A logarithmic axis, marked at 1, 2 and 5 of each of up to three decades, else at powers of ten.
+fn decades(extent: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
+    let [from, to] = [extent.start.log10().floor(), extent.end.log10().ceil()].map(|power| power as i32);
+    let steps: &[f64] = if extent.end < 1e3 * extent.start { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let marks = (from..=to).flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
+    let marks = marks.filter(|mark| extent.contains(mark)).collect();
+    extent.log_scale().with_key_points(marks)
+}
+
+/// A round number, as a power where it is very small or large.
+fn power(value: &f64) -> String {
+    match value.abs() {
+        // What is computed as 2 · 10⁻³ may end in many digits.
+        size if (1e-3..1e4).contains(&size) => format!("{}", (value * 1e9).round() / 1e9),
+        _ => signed(format!("{value:.0e}")),
+    }
+}
+
+impl Chart {
+    fn filled(fill: impl FnOnce(&mut Self)) -> Self {
+        let mut chart = Self::default();
+        fill(&mut chart);
+        chart
     }
 
-    fn legend(&mut self, position: SeriesLabelPosition) -> Drawn<()> {
-        self.0
-            .configure_series_labels()
-            .position(position)
-            .legend_area_size(60)
-            .label_font(("sans-serif", 28))
-            .background_style(WHITE.mix(0.8))
-            .draw()?;
-        Ok(())
+    fn add(&mut self, mark: Mark, pieces: impl IntoIterator<Item = Vec<(f64, f64)>>, label: &str) {
+        let series = Series::new(mark, pieces, label);
+        // What is not there has no place in the legend.
+        self.0.extend(series.is_drawn().then_some(series));
     }
 
-    /// An area, without an entry in the legend.
-    pub(super) fn band(&mut self, outline: Vec<(f64, f64)>, colour: RGBColor) -> Drawn<()> {
-        self.0.draw_series(std::iter::once(Polygon::new(outline, colour.mix(0.22))))?;
-        Ok(())
+    /// Areas within outlines.
+    pub(super) fn areas(
+        &mut self,
+        outlines: impl IntoIterator<Item = Vec<(f64, f64)>>,
+        colour: RGBAColor,
+        label: &str,
+    ) {
+        self.add(Mark::Areas(colour), outlines, label);
     }
 
     /// A line through points in order; it is broken where the number of one is not that after the last.
     pub(super) fn line(
         &mut self,
         points: impl IntoIterator<Item = (usize, f64, f64)>,
-        colour: RGBColor,
+        style: ShapeStyle,
         label: &str,
-    ) -> Drawn<()> {
-        let style = colour.stroke_width(4);
+    ) {
         let points: Vec<_> = points.into_iter().collect();
         // Sequences of one kind follow one another, each from its first frame.
         let pieces = points.chunk_by(|a, b| b.0 == a.0 + 1);
-        let pieces = pieces.map(|piece| piece.iter().map(|&(_, x, y)| (x, y)).collect::<Vec<_>>());
-        let pieces = pieces.map(|piece| PathElement::new(piece, style));
-        self.0
-            .draw_series(pieces)?
-            .label(label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 36, y)], style));
-        Ok(())
+        self.add(
+            Mark::Line(style),
+            pieces.map(|piece| piece.iter().map(|&(_, x, y)| (x, y)).collect()),
+            label,
+        );
     }
 
-    /// A thin line through points in order, without an entry in the legend: that of its dots says what it is.
-    pub(super) fn path(
+    /// Lines through the points of each piece; without a label the legend names them by their dots.
+    pub(super) fn paths(
         &mut self,
-        points: impl IntoIterator<Item = (f64, f64)>,
-        colour: RGBColor,
-    ) -> Drawn<()> {
-        let points: Vec<_> = points.into_iter().collect();
-        self.0.draw_series(std::iter::once(PathElement::new(points, colour.stroke_width(3))))?;
-        Ok(())
+        pieces: impl IntoIterator<Item = Vec<(f64, f64)>>,
+        style: ShapeStyle,
+        label: &str,
+    ) {
+        self.add(Mark::Line(style), pieces, label);
     }
 
     /// Dots of a style.
@@ -162,12 +287,8 @@ impl<'a, 'b: 'a, X: Ranged<ValueType = f64> + ValueFormatter<f64>> Chart<'a, 'b,
         points: impl IntoIterator<Item = (f64, f64)>,
         (size, style): (i32, ShapeStyle),
         label: &str,
-    ) -> Drawn<()> {
-        self.0
-            .draw_series(points.into_iter().map(|point| Circle::new(point, size, style)))?
-            .label(label)
-            .legend(move |(x, y)| Circle::new((x + 18, y), size, style));
-        Ok(())
+    ) {
+        self.add(Mark::Dots(size, style), [points.into_iter().collect()], label);
     }
 
     /// A broken line through points in order.
@@ -176,13 +297,8 @@ impl<'a, 'b: 'a, X: Ranged<ValueType = f64> + ValueFormatter<f64>> Chart<'a, 'b,
         points: impl IntoIterator<Item = (f64, f64)>,
         style: ShapeStyle,
         label: &str,
-    ) -> Drawn<()> {
-        let points: Vec<_> = points.into_iter().collect();
-        self.0
-            .draw_series(DashedLineSeries::new(points, 12, 10, style))?
-            .label(label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 36, y)], style));
-        Ok(())
+    ) {
+        self.add(Mark::Dashes(style), [points.into_iter().collect()], label);
     }
 
     /// Crosses.
@@ -191,11 +307,7 @@ impl<'a, 'b: 'a, X: Ranged<ValueType = f64> + ValueFormatter<f64>> Chart<'a, 'b,
         points: impl IntoIterator<Item = (f64, f64)>,
         style: ShapeStyle,
         label: &str,
-    ) -> Drawn<()> {
-        self.0
-            .draw_series(points.into_iter().map(|point| Cross::new(point, 10, style)))?
-            .label(label)
-            .legend(move |(x, y)| Cross::new((x + 18, y), 10, style));
-        Ok(())
+    ) {
+        self.add(Mark::Crosses(style), [points.into_iter().collect()], label);
     }
 }

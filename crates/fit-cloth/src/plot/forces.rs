@@ -1,7 +1,7 @@
-//! Force against extension or shear angle: measured on loading and unloading, and the model, one clip a sequence.
+//! Force against extension or shear angle: the measured loop, and the model, one clip a sequence.
 
 use super::chart::{Axes, Drawn, figure};
-use super::{LOADING, MODEL, UNLOADING, extension};
+use super::{MEASURED, MODEL, extension};
 use cloth_fit::frame::{Kind, Phase};
 use cloth_fit::report::{ForceRow, SequenceReport};
 use plotters::style::Color;
@@ -19,23 +19,26 @@ pub(super) fn draw(title: &str, kind: Kind, sequences: &[&SequenceReport]) -> Dr
     let highest = rows.iter().map(|row| row.measured.abs().max(row.simulated.abs())).fold(0.0, f64::max);
     let axes =
         Axes { title, x: (extension(kind), 0.0..widest * 1.03), y: ("clip force [N]", 0.0..highest * 1.06) };
+    let line = |force: fn(&ForceRow) -> f64| {
+        rows.iter().map(move |row| (row.frame, row.extension, force(row).abs()))
+    };
     figure(axes, |chart| {
-        chart.line(rows.iter().map(|row| (row.frame, row.extension, row.simulated.abs())), MODEL, "model")?;
-        let measured = [(false, "measured, loading", LOADING), (true, "measured, unloading", UNLOADING)];
-        for (unloading, label, colour) in measured {
+        chart.line(line(|row| row.simulated), MODEL.stroke_width(8), "model");
+        chart.line(line(|row| row.measured), MEASURED.stroke_width(2), "");
+        let measured = [
+            ("measured, loading", MEASURED.filled(), false),
+            ("measured, unloading", MEASURED.stroke_width(2), true),
+        ];
+        for (label, style, unloading) in measured {
             let branch = rows.iter().filter(|row| (row.phase == Phase::Unloading) == unloading);
-            let points: Vec<_> = branch.map(|row| (row.extension, row.measured.abs())).collect();
-            if !points.is_empty() {
-                chart.dots(points, (6, colour.stroke_width(2)), label)?;
-            }
+            chart.dots(branch.map(|row| (row.extension, row.measured.abs())), (6, style), label);
         }
-        Ok(())
     })
 }
 
 /// The rows of the force component that is largest: the pull, on the clip where it was measured. Its direction may turn
 /// with the clip; its place among the clip's components stays.
-fn pulled_rows(rows: &[ForceRow]) -> Vec<&ForceRow> {
+pub(crate) fn pulled_rows(rows: &[ForceRow]) -> Vec<&ForceRow> {
     let place = |index: usize| {
         let own = |row: &&ForceRow| row.frame == rows[index].frame && row.clip == rows[index].clip;
         (rows[index].clip, rows[..index].iter().filter(own).count())

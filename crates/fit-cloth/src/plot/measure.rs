@@ -1,7 +1,7 @@
 //! A measure of the whole against extension: measured, and the model, frame by frame.
 
 use super::chart::{Axes, Drawn, figure};
-use super::{LOADING, MODEL, UNLOADING, extension};
+use super::{MEASURED, MODEL, extension};
 use cloth_fit::frame::Kind;
 use cloth_fit::validation::{Measure, MeasureRow};
 use plotters::style::Color;
@@ -17,17 +17,18 @@ pub(super) fn draw(title: &str, kind: Kind, measure: Measure, rows: &[MeasureRow
         x: (extension(kind), 0.0..widest * 1.03),
         y: (&y, if low < 0.0 { low - space } else { 0.0 }..high + space),
     };
+    let line =
+        |value: fn(&MeasureRow) -> f64| rows.iter().map(move |row| (row.frame, row.extension, value(row)));
     figure(axes, |chart| {
-        let simulated = rows.iter().map(|row| (row.frame, row.extension, row.simulated));
-        chart.line(simulated, MODEL, "model")?;
-        let measured = [(false, "measured", LOADING), (true, "measured, several equilibria", UNLOADING)];
-        for (several, label, colour) in measured {
+        chart.line(line(|row| row.simulated), MODEL.stroke_width(8), "model");
+        chart.line(line(|row| row.measured), MEASURED.stroke_width(2), "");
+        let measured = [
+            ("measured", MEASURED.filled(), false),
+            ("measured, several equilibria", MEASURED.stroke_width(2), true),
+        ];
+        for (label, style, several) in measured {
             let shown = rows.iter().filter(|row| row.multi_stable == several);
-            let points: Vec<_> = shown.map(|row| (row.extension, row.measured)).collect();
-            if !points.is_empty() {
-                chart.dots(points, (6, colour.stroke_width(2)), label)?;
-            }
+            chart.dots(shown.map(|row| (row.extension, row.measured)), (6, style), label);
         }
-        Ok(())
     })
 }

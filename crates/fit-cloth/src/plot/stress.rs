@@ -1,31 +1,137 @@
-//! Stress against strain, or moment against curvature, with its 95 % band and the control points.
+//! Stress against strain, or moment against curvature, with its 95 % band and the control points; beneath, how much of
+//! the sheet has which strain.
 
-use super::MODEL;
-use super::chart::{Axes, Drawn, figure};
-use cloth_fit::report::{Sample, StageReport};
+use super::chart::{Axes, Chart, Drawn, figure_over};
+use super::{GREEN, GREY, MODEL};
+use crate::text::curve_labels;
+use cloth_fit::report::{Histogram, Sample, StageReport};
 use plotters::style::Color;
+use std::ops::Range;
 
+/// Which samples are drawn: a line through pixels that lie close together is not smooth.
+const EVERY: usize = 4;
+/// A band is drawn no farther from the curve's own range than so many times its largest stress.
+const FARTHEST: f64 = 1.0;
+/// Less of a range than this is not worth a word.
+const LEAST: f64 = 5e-3;
+
+/// A curve in the units of its figure.
+struct Plotted<'r> {
+    samples: Vec<Sample>,
+    points: Vec<Sample>,
+    histogram: &'r Histogram,
+    /// Of strain and stress, over all of it.
+    extents: [Range<f64>; 2],
+    /// The band reaches farther than is drawn.
+    is_cut: bool,
+}
+
+/// # Errors
+/// A curve without extent.
 pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
-    let samples = &stage.curve.samples;
-    let highest = |sample: &Sample| sample.band.map_or(sample.stress, |[_, high]| high);
-    let lowest = |sample: &Sample| sample.band.map_or(sample.stress, |[low, _]| low);
-    let top = samples.iter().map(highest).fold(0.0, f64::max);
-    let bottom = samples.iter().map(lowest).fold(0.0, f64::min);
-    let [low, high] = [&samples[0], &samples[samples.len() - 1]].map(|sample| sample.strain);
-    let [x, y] = match stage.components[0].is_bending() {
-        true => ["curvature [1/m]", "moment per width [N]"],
-        false => ["strain", "stress [N/m]"],
+    let component = stage.components[0];
+    let [x, y] = curve_labels(component);
+    // Moments are small numbers.
+    let (names, unit, seen) = match component.is_bending() {
+        true => ([x, "moment per width [mN]"], 1e3, "curvatures of all frames"),
+        false => (["strain [–]", y], 1.0, "strains of all frames"),
     };
+    let plotted = Plotted::new(stage, unit);
+    let tallest = 110.0 * plotted.histogram.shares.iter().fold(0.0, |m: f64, share| m.max(*share));
+    let shares = 0.0..if tallest > 0.0 { tallest } else { 1.0 };
+    let [strains, stresses] = plotted.extents.clone();
     let title = format!("{}, {}", stage.name(), stage.model);
-    let axes = Axes { title: &title, x: (x, low..high * 1.03), y: (y, bottom..top * 1.06) };
-    figure(axes, |chart| {
-        let upper = samples.iter().filter_map(|s| s.band.map(|[_, high]| (s.strain, high)));
-        let lower = samples.iter().rev().filter_map(|s| s.band.map(|[low, _]| (s.strain, low)));
-        chart.band(upper.chain(lower).collect(), MODEL)?;
-        let curve = samples.iter().enumerate().map(|(i, s)| (i, s.strain, s.stress));
-        chart.line(curve, MODEL, "fit, 95 % band")?;
-        // The last may lie beyond what was seen.
-        let points = stage.curve.points.iter().filter(|point| point.strain <= high * 1.03);
-        chart.dots(points.map(|point| (point.strain, point.stress)), (8, MODEL.filled()), "control points")
-    })
+    let axes = Axes { title: &title, x: (names[0], strains), y: (names[1], stresses.clone()) };
+    figure_over(
+        axes,
+        |chart| {
+            plotted.shade(chart, &stresses, "not visited");
+            plotted.curve(chart);
+        },
+        ("share of the sheet [%]", shares.clone()),
+        |chart| {
+            plotted.shade(chart, &shares, "");
+            plotted.bars(chart, seen);
+        },
+    )
+}
+
+impl<'r> Plotted<'r> {
+    fn new(stage: &'r StageReport, unit: f64) -> Self {
+        let in_unit = |sample: &Sample| Sample {
+            stress: unit * sample.stress,
+            band: sample.band.map(|band| band.map(|side| unit * side)),
+            ..*sample
+        };
+        let all = &stage.curve.samples;
+        let kept = all.iter().enumerate().filter(|(i, _)| i % EVERY == 0 || i + 1 == all.len());
+        let mut samples: Vec<Sample> = kept.map(|(_, sample)| in_unit(sample)).collect();
+        let points: Vec<Sample> = stage.curve.points.iter().map(in_unit).collect();
+        let range = |value: fn(&Sample) -> f64| {
+            let values = samples.iter().chain(&points).map(value);
+            values.fold([0.0, 0.0], |[low, high]: [f64; 2], value| [low.min(value), high.max(value)])
+        };
+        let [strains, stresses] = [range(|s| s.strain), range(|s| s.stress)];
+        // What is known of a curve may be next to nothing.
+        let most = FARTHEST * (stresses[1] - stresses[0]);
+        let side = |sample: &Sample, side: usize| sample.band.map_or(0.0, |band| band[side]);
+        let [low, high] = [
+            samples.iter().map(|s| side(s, 0)).fold(stresses[0], f64::min),
+            samples.iter().map(|s| side(s, 1)).fold(stresses[1], f64::max),
+        ];
+        let [lowest, highest] = [low.max(stresses[0] - most), high.min(stresses[1] + most)];
+        samples.iter_mut().filter_map(|sample| sample.band.as_mut()).for_each(|band| {
+            *band = band.map(|side| side.clamp(lowest, highest));
+        });
+        let space = 0.05 * (highest - lowest);
+        let extents = [
+            strains[0]..strains[1] + 0.03 * (strains[1] - strains[0]),
+            if lowest < 0.0 { lowest - space } else { 0.0 }..highest + space,
+        ];
+        let is_cut = low < lowest || high > highest;
+        Self { samples, points, histogram: &stage.curve.histogram, extents, is_cut }
+    }
+
+    /// Where the range that was seen ends.
+    fn seen(&self) -> f64 {
+        self.samples.iter().map(|sample| sample.strain).fold(f64::MIN, f64::max)
+    }
+
+    /// Marks the range up to the last control point that was not seen.
+    fn shade(&self, chart: &mut Chart, heights: &Range<f64>, label: &str) {
+        let last = self.points.iter().map(|point| point.strain).fold(0.0, f64::max);
+        if last - self.seen() > LEAST * last {
+            let (left, right, low, high) = (self.seen(), last, heights.start, heights.end);
+            let corners = vec![(left, low), (right, low), (right, high), (left, high)];
+            chart.areas([corners], GREY.mix(0.16), label);
+        }
+    }
+
+    fn curve(&self, chart: &mut Chart) {
+        let sides = || self.samples.iter().filter_map(|s| s.band.map(|band| (s.strain, band)));
+        let above = sides().map(|(strain, [_, high])| (strain, high));
+        let below = sides().collect::<Vec<_>>().into_iter().rev().map(|(strain, [low, _])| (strain, low));
+        let outline: Vec<_> = above.chain(below).collect();
+        let label = if self.is_cut { "95 % band, cut off" } else { "95 % band" };
+        chart.areas((!outline.is_empty()).then_some(outline), MODEL.mix(0.22), label);
+        let place = |sample: &Sample| (sample.strain, sample.stress);
+        let beyond = self.points.iter().filter(|point| point.strain > self.seen() * (1.0 + LEAST));
+        let beyond: Vec<_> = self.samples.last().into_iter().chain(beyond).map(place).collect();
+        if beyond.len() > 1 {
+            chart.dashes(beyond, MODEL.stroke_width(3), "fit, extrapolated");
+        }
+        chart.paths([self.samples.iter().map(place).collect()], MODEL.stroke_width(4), "fit");
+        chart.dots(self.points.iter().map(place), (8, MODEL.filled()), "control points");
+    }
+
+    fn bars(&self, chart: &mut Chart, label: &str) {
+        let Histogram { range: [from, to], shares } = self.histogram;
+        let wide = (to - from) / shares.len().max(1) as f64;
+        let shown = shares.iter().enumerate().filter(|(_, share)| **share > 0.0);
+        let bars = shown.map(|(index, share)| {
+            let [left, right] = [index, index + 1].map(|i| from + wide * i as f64);
+            vec![(left, 0.0), (right, 0.0), (right, 100.0 * share), (left, 100.0 * share)]
+        });
+        chart.areas(bars, GREEN.mix(0.7), label);
+    }
 }

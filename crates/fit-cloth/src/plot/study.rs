@@ -8,7 +8,7 @@ mod parts;
 mod stages;
 
 use super::chart::Drawn;
-use super::{FOURTH, LOADING, MODEL, THIRD, UNLOADING};
+use super::{BLUE, GREEN, GREY, PINK, VERMILLION};
 use crate::study::{Solver, Study};
 use cloth_sim::material::Model;
 use plotters::style::{Color, RGBColor, ShapeStyle};
@@ -36,9 +36,9 @@ pub(super) fn figures(study: &Study) -> Vec<(String, Drawn<String>)> {
 /// The colour of a model.
 fn colour(model: Model) -> RGBColor {
     match model {
-        Model::Stvk => MODEL,
-        Model::SoftConstraint => LOADING,
-        Model::Springs => THIRD,
+        Model::Stvk => BLUE,
+        Model::SoftConstraint => VERMILLION,
+        Model::Springs => GREEN,
     }
 }
 

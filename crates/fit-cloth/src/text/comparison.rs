@@ -1,6 +1,7 @@
 //! Models and variants side by side.
 
 use super::{list, percent};
+use crate::page::Ranking;
 use cloth_fit::compare::{Comparison, Criterion, Distance, Row};
 use std::fmt::Write;
 
@@ -25,21 +26,68 @@ pub fn comparison(comparison: &Comparison) -> String {
     for row in &comparison.rows {
         let _ = writeln!(text, "{:15}  {:16}  {}", row.model, row.variant, figures(row));
     }
-    let _ = write!(text, "\n{}\n", ranking(comparison.ranked_by));
+    let _ = write!(text, "\n{}\n", ranked_by(comparison.ranked_by));
     text + &losses(comparison)
+}
+
+/// The same for a page: rows in cells.
+pub fn ranking(comparison: &Comparison) -> Ranking {
+    let columns = [
+        "model",
+        "variant",
+        "parameters",
+        "fit",
+        "[N]",
+        "[mm]",
+        "validation",
+        "[N]",
+        "[mm]",
+        "left out",
+        "factorisations",
+        "seconds",
+        "",
+    ];
+    let row = |row: &Row| {
+        let mut cells = vec![row.model.to_string(), row.variant.to_string()];
+        if let Some(failure) = &row.failure {
+            cells.push(format!("not fitted: {failure}"));
+            return cells;
+        }
+        let state = if row.converged { "" } else { "NOT converged" };
+        let measured = |distance: Option<Distance>| {
+            [vec![percent(distance.and_then(|distance| distance.relative))], in_units(distance).into()]
+                .concat()
+        };
+        cells.push(row.parameters.to_string());
+        cells.extend(measured(Some(row.fit)));
+        cells.extend(measured(row.validation));
+        cells.extend([
+            left_out(row),
+            row.factorisations.to_string(),
+            format!("{:.1}", row.seconds),
+            state.into(),
+        ]);
+        cells
+    };
+    Ranking {
+        by: ranked_by(comparison.ranked_by),
+        notes: losses(comparison).lines().map(|loss| format!("{loss}.")).collect(),
+        columns: columns.map(String::from).into(),
+        rows: comparison.rows.iter().map(row).collect(),
+    }
 }
 
 fn figures(row: &Row) -> String {
     if let Some(failure) = &row.failure {
         return format!("not fitted: {failure}");
     }
+    let [fit_n, fit_mm] = in_units(Some(row.fit));
+    let [validation_n, validation_mm] = in_units(row.validation);
     format!(
-        "{:10}  {:>8} {}  {:>10} {}  {:>16}  {:10}  {:14}  {:7.1}{}",
+        "{:10}  {:>8} {fit_n:>9} {fit_mm:>9}  {:>10} {validation_n:>9} {validation_mm:>9}  {:>16}  {:10}  {:14}  {:7.1}{}",
         row.parameters,
         percent(row.fit.relative),
-        in_units(Some(row.fit)),
         percent(row.validation.and_then(|validation| validation.relative)),
-        in_units(row.validation),
         left_out(row),
         row.equilibria,
         row.factorisations,
@@ -48,11 +96,12 @@ fn figures(row: &Row) -> String {
     )
 }
 
-fn in_units(distance: Option<Distance>) -> String {
+/// Newtons and millimetres.
+fn in_units(distance: Option<Distance>) -> [String; 2] {
     let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.3e}"));
-    let force = number(distance.and_then(|distance| distance.rms_force_n));
-    let position = number(distance.and_then(|distance| Some(1e3 * distance.rms_position_m?)));
-    format!("{force:>9} {position:>9}")
+    let force = distance.and_then(|distance| distance.rms_force_n);
+    let position = distance.and_then(|distance| Some(1e3 * distance.rms_position_m?));
+    [force, position].map(number)
 }
 
 /// The overall figure, and how many sequences could not be spared or not be predicted.
@@ -64,7 +113,7 @@ fn left_out(row: &Row) -> String {
     }
 }
 
-fn ranking(criterion: Criterion) -> String {
+fn ranked_by(criterion: Criterion) -> String {
     let by = match criterion {
         Criterion::Validation => "the sequences left for validation, which no fit saw",
         Criterion::LeaveOneOut => "the sequences left out of the fit one at a time",

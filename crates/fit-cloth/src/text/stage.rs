@@ -1,14 +1,22 @@
 //! One stage: what it used, how it went, the curve.
 
-use super::{interventions, list, seen, unit};
+use super::{NO_KNOWLEDGE, interventions, list, seen, unit};
 use cloth_fit::report::StageReport;
 use cloth_fit::simulation::Objective;
 use std::fmt::Write;
 
+/// What a stage used and how it went, a line each; without the time, which is not the same twice.
+pub fn course(stage: &StageReport) -> Vec<String> {
+    let words =
+        [basis(stage), levels(stage), counted(stage, ""), interventions(&stage.interventions)].concat();
+    words.lines().skip(1).map(|line| line.trim().into()).collect()
+}
+
 /// A stage of the fit; with all its iterations, if `verbose`.
 pub fn stage(stage: &StageReport, verbose: bool) -> String {
     let growth = if verbose { iterations(stage) } else { levels(stage) };
-    format!("{}{growth}{}", basis(stage), curve(stage))
+    let helped = interventions(&stage.interventions);
+    [basis(stage), growth, spent(stage), helped, curve(stage)].concat()
 }
 
 /// What was fitted to what, and what was taken as known.
@@ -44,7 +52,7 @@ fn levels(stage: &StageReport) -> String {
         let kept = if level.points == stage.curve.curve.len() { " (kept)" } else { "" };
         format!("{}: {:.3e}{kept}", level.points, factor * level.rms)
     }));
-    format!("  rms [{name}] by control points: {levels}\n{}", spent(stage))
+    format!("  rms [{name}] by control points: {levels}\n")
 }
 
 /// The iterations, level by level.
@@ -56,33 +64,34 @@ fn iterations(stage: &StageReport) -> String {
         if level.iterations.is_empty() {
             let _ = writeln!(text, "  {:6}  {:9}  {:9.3e}", level.points, 0, factor * level.rms);
         }
-        // The level's residual belongs to its last iteration; sums of squares give the others in proportion.
-        let last = level.iterations.last().map_or(1.0, |iteration| iteration.sum_of_squares);
-        for iteration in &level.iterations {
-            let share = if last > 0.0 { (iteration.sum_of_squares / last).sqrt() } else { 1.0 };
+        for (iteration, rms) in level.iterations.iter().zip(level.course()) {
             let gain = iteration.gain.map_or("-".into(), |gain| format!("{gain:.1e}"));
             let _ = writeln!(
                 text,
                 "  {:6}  {:9}  {:9.3e}  {gain:>8}  {:8.1e}  {:8.1e}  {}",
                 level.points,
                 iteration.iteration,
-                factor * level.rms * share,
+                factor * rms,
                 iteration.step,
                 iteration.radius,
                 if iteration.accepted { "yes" } else { "no" }
             );
         }
     }
-    text + &spent(stage)
+    text
 }
 
+/// Work and time.
 fn spent(stage: &StageReport) -> String {
+    counted(stage, &format!(", {:.2} s", stage.seconds))
+}
+
+fn counted(stage: &StageReport, time: &str) -> String {
     let counters = &stage.counters;
-    let text = format!(
-        "  {} equilibria, {} Newton steps, {} factorisations, {:.2} s; {}\n",
-        counters.equilibria, counters.iterations, counters.factorisations, stage.seconds, stage.growth
-    );
-    text + &interventions(&stage.interventions)
+    format!(
+        "  {} equilibria, {} Newton steps, {} factorisations{time}; {}\n",
+        counters.equilibria, counters.iterations, counters.factorisations, stage.growth
+    )
 }
 
 /// The control points with their uncertainty.
@@ -104,7 +113,7 @@ fn curve(stage: &StageReport) -> String {
     for (i, point) in report.points.iter().enumerate() {
         let size = report.curve.stiffnesses()[i].abs().max(f64::MIN_POSITIVE);
         let deviation = match report.half_bands[i] {
-            Some(half) if half < 10.0 * size => format!("± {:.1} %", 100.0 * half / size),
+            Some(half) if half < NO_KNOWLEDGE * size => format!("± {:.1} %", 100.0 * half / size),
             _ => "not known".into(),
         };
         let _ = writeln!(
@@ -116,7 +125,7 @@ fn curve(stage: &StageReport) -> String {
     for i in &report.unseen {
         let _ = writeln!(text, "  no frame sees control point {}", i + 1);
     }
-    for (i, j, correlation) in &report.correlated {
+    for (i, j, correlation) in report.correlated() {
         let _ = writeln!(text, "  correlated: control points {} and {} ({correlation:.3})", i + 1, j + 1);
     }
     if report.active_constraints > 0 {

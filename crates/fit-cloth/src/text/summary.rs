@@ -1,6 +1,6 @@
 //! All curves at a glance.
 
-use super::{list, seen};
+use super::{half_band, list, seen};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::{Sample, StageReport};
 use cloth_sim::material::Component;
@@ -11,17 +11,27 @@ pub fn summary(report: &FitReport) -> String {
     let mut text = String::from(
         "curve          points  at the end of the range           ± 95 %  range seen             observed by\n",
     );
-    for component in Component::ALL {
-        let _ = match report.stage(component).filter(|stage| stage.curve.observed) {
-            Some(stage) => writeln!(text, "{component:13}  {}", row(stage)),
-            None if report.knowledge.knows(component) => writeln!(text, "{component:13}  given"),
-            None => writeln!(text, "{component:13}  not observed"),
-        };
+    for [component, points, value, band, range, seen_by] in summary_rows(report) {
+        let line = format!("{component:13}  {points:>6}  {value:28}  {band:>9}  {range:21}  {seen_by}");
+        let _ = writeln!(text, "{}", line.trim_end());
     }
     text
 }
 
-fn row(stage: &StageReport) -> String {
+/// The same in cells: component, points, value at the end, band, range, sequences; what does not apply is empty.
+pub fn summary_rows(report: &FitReport) -> Vec<[String; 6]> {
+    let row = |component| match report.stage(component).filter(|stage| stage.curve.observed) {
+        Some(stage) => row(component, stage),
+        None => {
+            let known = report.knowledge.knows(component);
+            let why = if known { "given" } else { "not observed" };
+            [component.to_string(), why.into(), String::new(), String::new(), String::new(), String::new()]
+        }
+    };
+    Component::ALL.into_iter().map(row).collect()
+}
+
+fn row(component: Component, stage: &StageReport) -> [String; 6] {
     let end = &stage.curve.samples[stage.curve.samples.len() - 1];
     let (what, unit, per) = match stage.components[0].is_bending() {
         true => ("moment", "N", " 1/m"),
@@ -29,18 +39,12 @@ fn row(stage: &StageReport) -> String {
     };
     let range = seen(stage) + per;
     let value = format!("{what} {:.4e} {unit}", end.stress);
-    let points = stage.curve.curve.len();
     let seen_by = list(stage.sequences.iter().map(|sequence| &sequence.name));
-    format!("{points:6}  {value:28}  {:>9}  {range:21}  {seen_by}", band(end))
+    [component.to_string(), stage.curve.curve.len().to_string(), value, band(end), range, seen_by]
 }
 
 fn band(sample: &Sample) -> String {
-    match sample.band {
-        Some([low, high]) if sample.stress != 0.0 => {
-            format!("{:.1} %", 50.0 * (high - low) / sample.stress.abs())
-        }
-        _ => "not known".into(),
-    }
+    half_band(sample).map_or("not known".into(), |half| format!("{:.1} %", 100.0 * half))
 }
 
 /// That the published method was used, and what that does to bending.

@@ -1,5 +1,6 @@
 //! A stage in one sentence.
 
+use super::overall::widest_band;
 use super::{list, unit};
 use cloth_fit::report::{SequenceReport, StageReport};
 use std::fmt::Write;
@@ -46,19 +47,16 @@ fn next(stage: &StageReport) -> String {
     if !stage.curve.observed {
         return "it takes another test to see this curve".into();
     }
-    let samples = &stage.curve.samples;
-    let widths = samples.iter().filter_map(|s| s.band.map(|[low, high]| (s.strain, high - low)));
-    let Some((place, width)) = widths.max_by(|a, b| a.1.total_cmp(&b.1)) else {
+    let Some((place, share)) = widest_band(stage) else {
         return "too few frames to judge all of the curve by: measure more".into();
     };
-    let largest = samples.iter().fold(0.0f64, |m, s| m.max(s.stress.abs()));
     let [at, of] = match stage.components[0].is_bending() {
         true => [format!("curvature {place:.2} 1/m"), "moment".into()],
         false => [format!("strain {place:.4}"), "stress".into()],
     };
     format!(
         "the 95 % band is widest at {at}, ± {:.1} % of the largest {of}: more frames there would narrow it most",
-        50.0 * width / largest.max(f64::MIN_POSITIVE)
+        100.0 * share
     )
 }
 

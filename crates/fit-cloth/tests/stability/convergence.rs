@@ -9,7 +9,7 @@ use plotters::style::{BLACK, Color, RGBColor, ShapeStyle};
 use std::fmt::Write;
 use std::path::Path;
 
-const COLOURS: [RGBColor; 3] = [RGBColor(31, 90, 160), RGBColor(200, 80, 30), RGBColor(0, 140, 110)];
+const COLOURS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
 
 /// Nodes a side.
 const NODES: usize = 13;
@@ -107,7 +107,7 @@ fn figure(solves: &[Solve], scene: Scene) -> String {
     let axes = Axes {
         title: &title,
         x: ("stretch / bending stiffness", 0.5..2.0 * last),
-        y: ("factorisations", 0.8..400.0 * most),
+        y: ("factorisations", 0.8..1.3 * most),
     };
     log_figure(axes, |chart| {
         for (model, colour) in Model::ALL.into_iter().zip(COLOURS) {
@@ -116,13 +116,13 @@ fn figure(solves: &[Solve], scene: Scene) -> String {
                 let own = || solves.iter().filter(|solve| solve.is_of(scene, model, solver));
                 let point = |solve: &Solve| (solve.ratio, solve.factorisations as f64);
                 let converged = || own().filter(|solve| solve.status == Status::Converged).map(point);
-                chart.path(converged(), colour)?;
-                chart.dots(converged(), (8, style), &format!("{model}, {solver}"))?;
+                chart.paths([converged().collect()], colour.stroke_width(3), "");
+                chart.dots(converged(), (8, style), &format!("{model}, {solver}"));
             }
         }
         let failed = of().filter(|solve| solve.status != Status::Converged);
         let failed = failed.map(|solve| (solve.ratio, solve.factorisations as f64));
-        chart.crosses(failed, BLACK.stroke_width(3), "not converged")
+        chart.crosses(failed, BLACK.stroke_width(3), "not converged");
     })
     .unwrap()
 }

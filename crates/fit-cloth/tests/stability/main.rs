@@ -32,6 +32,8 @@ mod misfits;
 mod motion;
 mod property;
 mod readers;
+#[path = "../../src/plot/series.rs"]
+mod series;
 mod sheets;
 mod solver;
 mod stiff;
@@ -43,6 +45,8 @@ mod support;
 mod surroundings;
 mod table;
 mod tokens;
+#[path = "../../src/plot/writing.rs"]
+mod writing;
 
 use table::{Extent, HEADER, Row, SUMMARY, assert_green, summary};
 

@@ -22,6 +22,18 @@ pub(crate) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
     Ok(value)
 }
 
+/// The same of a file that says by its `schema` which version it is: another one may well have other fields.
+///
+/// # Errors
+/// As [`parse`]; another version.
+pub(crate) fn parse_version<T: DeserializeOwned>(path: &Path, text: &str, schema: &str) -> Result<T> {
+    let value: serde_json::Value = parse(path, text)?;
+    if value["schema"] != schema {
+        return Err(Error::input(path, None, "schema", shown(&value["schema"].to_string()), schema));
+    }
+    parse(path, text)
+}
+
 /// Splits the parser's message into field, found and expected.
 fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
     let message = error.to_string();

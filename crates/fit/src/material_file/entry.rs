@@ -90,8 +90,7 @@ impl CurveEntry {
         let report = &stage.curve;
         let scatter = |objective| Some(stage.scatter).filter(|_| stage.objective == objective);
         let [forces, positions] = [Objective::Forces, Objective::Positions].map(scatter);
-        let correlation =
-            |&(i, j, correlation): &(usize, usize, f64)| Correlation { points: [i, j], correlation };
+        let correlation = |(i, j, correlation)| Correlation { points: [i, j], correlation };
         Self {
             observed: report.observed,
             given: false,
@@ -101,7 +100,7 @@ impl CurveEntry {
             share_visited: Some(report.share_visited),
             rank: Some(report.rank),
             unseen_points: report.unseen.clone(),
-            correlations: report.correlated.iter().map(correlation).collect(),
+            correlations: report.correlated().map(correlation).collect(),
             active_constraints: Some(report.active_constraints),
             noise_n: forces.map(|scatter| scatter.noise),
             misfit_n: forces.map(|scatter| scatter.misfit),
@@ -188,7 +187,10 @@ pub struct ResidualEntry {
 }
 
 impl ResidualEntry {
-    pub(crate) fn new(sequence: &SequenceReport, dropped: &[DroppedFrame]) -> Self {
+    /// What the report of a sequence says.
+    ///
+    /// * `dropped` — the frames without an equilibrium, of any sequences
+    pub fn new(sequence: &SequenceReport, dropped: &[DroppedFrame]) -> Self {
         let lost = dropped.iter().filter(|dropped| dropped.sequence == sequence.name);
         Self {
             sequence: sequence.name.clone(),

@@ -1,12 +1,12 @@
 //! Error of the places against the size of a cell, with a line of slope two.
 
-use super::{Drawn, FOURTH, LOADING, MODEL, THIRD, UNLOADING, decades};
+use super::{BLUE, Drawn, GREEN, GREY, PINK, VERMILLION, decades};
 use crate::plot::chart::{Axes, log_figure};
 use crate::study::{Part, Run, Solver, Study};
 use cloth_sim::material::Model;
 use plotters::style::Color;
 
-const COLOURS: [plotters::style::RGBColor; 4] = [MODEL, LOADING, THIRD, FOURTH];
+const COLOURS: [plotters::style::RGBColor; 4] = [BLUE, VERMILLION, GREEN, PINK];
 
 /// The scenes in the order in which they were run.
 pub(super) fn scenes(study: &Study) -> Vec<String> {
@@ -38,7 +38,7 @@ pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
     let title = format!("Equilibria on finer meshes, {model}");
     let axes = Axes {
         title: &title,
-        x: ("cells per side", 0.8 * cells[0]..6.0 * cells[1]),
+        x: ("cells per side", 0.8 * cells[0]..1.25 * cells[1]),
         y: ("error of places [mm]", errors),
     };
     log_figure(axes, |chart| {
@@ -50,12 +50,12 @@ pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
             }
             let order = own().filter_map(|run| run.order).next_back();
             let label = order.map_or(scene.clone(), |order| format!("{scene}: order {order:.1}"));
-            chart.path(points.iter().copied(), colour)?;
-            chart.dots(points.iter().copied(), (8, colour.filled()), &label)?;
+            chart.paths([points.clone()], colour.stroke_width(3), "");
+            chart.dots(points.iter().copied(), (8, colour.filled()), &label);
         }
         let top = points.iter().map(|(_, error)| *error).fold(0.0, f64::max);
         let guide = [cells[0], cells[1]].map(|x| (x, 0.5 * top * (cells[0] / x).powi(2)));
-        chart.dashes(guide, UNLOADING.stroke_width(3), "order 2")
+        chart.dashes(guide, GREY.stroke_width(3), "order 2");
     })
 }
 

@@ -42,8 +42,8 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
     let times = decades(runs.iter().map(|run| run.spent.seconds)).ok_or("no runs")?;
     let errors =
         decades(runs.iter().filter_map(|run| point(run)).map(|(_, error)| error)).ok_or("no errors")?;
-    // Room for the legend and for what failed.
-    let (times, errors) = (times.start..times.end * 100.0, errors.start..errors.end * 2.0);
+    // Room for what failed.
+    let (times, errors) = (times, errors.start..errors.end * 2.0);
     let top = errors.end / 1.4;
     let done: Vec<&&Run> = runs.iter().filter(|run| !run.failed() && point(run).is_some()).collect();
     let best: Vec<[f64; 2]> = done.iter().filter_map(|run| point(run)).map(<[f64; 2]>::from).collect();
@@ -54,7 +54,7 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
     let axes = Axes { title, x: ("wall time [s]", times), y: (y, errors) };
     log_figure(axes, |chart| {
         let front = front(&best).into_iter().map(|[seconds, error]| (seconds, error));
-        chart.dashes(front, BLACK.mix(0.55).stroke_width(9), "Pareto front")?;
+        chart.dashes(front, BLACK.mix(0.55).stroke_width(9), "Pareto front");
         for model in Model::ALL {
             for solver in Solver::ALL {
                 let own = done.iter().filter(|run| run.model == model && run.solver == solver);
@@ -63,14 +63,13 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
                     continue;
                 }
                 let (size, style) = dot(model, solver);
-                chart.path(points.iter().copied(), super::colour(model))?;
-                chart.dots(points.iter().copied(), (size, style), &format!("{model}, {solver}"))?;
+                chart.paths([points.clone()], super::colour(model).stroke_width(3), "");
+                chart.dots(points.iter().copied(), (size, style), &format!("{model}, {solver}"));
             }
         }
         for model in Model::ALL.into_iter().filter(|&model| !failed(model).is_empty()) {
             let style = super::colour(model).stroke_width(4);
-            chart.crosses(failed(model), style, &format!("{model}, failed"))?;
+            chart.crosses(failed(model), style, &format!("{model}, failed"));
         }
-        Ok(())
     })
 }

@@ -1,6 +1,6 @@
 //! Curve error against noise, and the least that there can be.
 
-use super::{Drawn, LOADING, MODEL, decades};
+use super::{BLUE, Drawn, VERMILLION, decades};
 use crate::plot::chart::{Axes, log_figure};
 use crate::study::{Study, levels};
 use plotters::style::Color;
@@ -14,25 +14,24 @@ pub(super) fn draw(study: &Study) -> Drawn<String> {
     let errors = decades(errors).ok_or("no errors")?;
     let axes = Axes {
         title: "Curve error against noise",
-        x: ("noise, multiple of the instruments'", noises.start..noises.end * 30.0),
+        x: ("noise, multiple of the instruments'", noises),
         y: ("curve error, share of the largest stress", errors),
     };
     log_figure(axes, |chart| {
         let groups: Vec<_> = levels.chunk_by(|a, b| a.test == b.test).collect();
         for (index, group) in groups.iter().enumerate() {
             // Two meshes a curve: the fit's own first.
-            let colour = if index < 2 { MODEL } else { LOADING };
+            let colour = if index < 2 { BLUE } else { VERMILLION };
             let own = index % 2 == 0;
             let style = if own { colour.filled() } else { colour.stroke_width(3) };
             let points = || group.iter().map(|level| (level.noise, level.error));
-            chart.path(points(), colour)?;
-            chart.dots(points(), (8, style), &group[0].test)?;
+            chart.paths([points().collect()], colour.stroke_width(3), "");
+            chart.dots(points(), (8, style), &group[0].test);
             if own {
                 let floor = group.iter().filter_map(|level| Some((level.noise, level.floor?)));
                 let curve = group[0].test.split(',').next().unwrap_or_default();
-                chart.dashes(floor, colour.stroke_width(3), &format!("{curve}, floor"))?;
+                chart.dashes(floor, colour.stroke_width(3), &format!("{curve}, floor"));
             }
         }
-        Ok(())
     })
 }

@@ -1,7 +1,7 @@
 //! What leaving out each part saves, and which error it causes.
 
 use super::bars::{self, Bar};
-use super::{Drawn, LOADING, MODEL};
+use super::{BLUE, Drawn, VERMILLION};
 use crate::study::{Ablated, Ending, Study};
 
 /// # Errors
@@ -9,7 +9,7 @@ use crate::study::{Ablated, Ending, Study};
 pub(super) fn draw(study: &Study) -> Drawn<String> {
     let bars: Vec<Bar> = study.ablation.iter().map(bar).collect();
     let lowest = bars.iter().map(|bar| bar.pieces[0].0).fold(0.0, f64::min);
-    let legend = [("in by default", MODEL), ("left out by default", LOADING)];
+    let legend = [("in by default", BLUE), ("left out by default", VERMILLION)];
     // Notes stand beyond the longest bar.
     let extent = lowest.max(-100.0)..190.0;
     bars::draw(
@@ -30,7 +30,7 @@ fn bar(row: &Ablated) -> Bar {
     };
     Bar {
         name: format!("{}, {}", row.scene, row.part),
-        pieces: vec![(100.0 * row.saving().max(-1.0), if row.by_default { MODEL } else { LOADING })],
+        pieces: vec![(100.0 * row.saving().max(-1.0), if row.by_default { BLUE } else { VERMILLION })],
         note,
     }
 }

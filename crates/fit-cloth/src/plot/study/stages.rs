@@ -1,7 +1,7 @@
 //! Where the time of a fit goes: stages end to end, a bar a model and solver.
 
 use super::bars::{self, Bar};
-use super::{Drawn, FOURTH, LOADING, MODEL, THIRD};
+use super::{BLUE, Drawn, GREEN, PINK, VERMILLION};
 use crate::study::{Part, Solver, Study};
 use cloth_sim::material::Model;
 use plotters::style::RGBColor;
@@ -10,10 +10,10 @@ use plotters::style::RGBColor;
 type Kind = (&'static str, RGBColor, fn(&str) -> bool);
 
 const KINDS: [Kind; 4] = [
-    ("stretch", MODEL, |stage| stage.starts_with("stretch")),
-    ("shear", LOADING, |stage| stage == "shear"),
-    ("bending", THIRD, |stage| stage.starts_with("bend") && !stage.ends_with("again")),
-    ("shear and bending again", FOURTH, |stage| stage.ends_with("again")),
+    ("stretch", BLUE, |stage| stage.starts_with("stretch")),
+    ("shear", VERMILLION, |stage| stage == "shear"),
+    ("bending", GREEN, |stage| stage.starts_with("bend") && !stage.ends_with("again")),
+    ("shear and bending again", PINK, |stage| stage.ends_with("again")),
 ];
 
 /// Of the fits on the finest grid.

@@ -1,10 +1,10 @@
 //! Faces and lines in the order of their distance.
 
-use super::super::chart::Drawn;
+use super::chart::Drawn;
 use super::view::View;
+use super::writing::Area;
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::f64::consts::TAU;
 
@@ -17,8 +17,12 @@ const FLAT: RGBColor = RGBColor(228, 228, 228);
 const OUTLINE: RGBColor = RGBColor(70, 70, 70);
 /// Least share of light on a face.
 const DARK: f64 = 0.42;
-/// Faces reach beyond their edges by so much, in pixels: no paper shines through between neighbours.
-const OVERLAP: f64 = 2.2;
+/// Faces reach so far beyond their edges, and at most so far beyond their corners, in pixels: no paper shines through
+/// between neighbours, whose corners are rounded to pixels.
+const OVERLAP: f64 = 1.2;
+const CORNER: f64 = 4.0;
+/// Longest head of an arrow, in pixels.
+const HEAD: f64 = 18.0;
 /// A circle's corners.
 const CORNERS: usize = 48;
 
@@ -35,8 +39,9 @@ pub(super) struct Panel {
 
 enum Item {
     Face(Vec<(i32, i32)>, RGBColor),
-    Line(Vec<(i32, i32)>, u32),
+    Line(Vec<(i32, i32)>, ShapeStyle),
     Pin((i32, i32)),
+    Arrow([[f64; 2]; 2], ShapeStyle),
 }
 
 /// What is to be drawn, with how near it is.
@@ -55,11 +60,16 @@ impl<'v> Painter<'v> {
     pub(super) fn cloth(&mut self, mesh: &Mesh, positions: &[Vector3<f64>]) {
         // Light falls on the mean normals of corners, so that facets show less.
         let mut normals = vec![Vector3::zeros(); mesh.len()];
-        for triangle in &mesh.triangles {
+        // Where a node was not seen there is a hole.
+        let is_seen = |nodes: &[usize]| {
+            nodes.iter().all(|&node| positions[node].iter().all(|coordinate| coordinate.is_finite()))
+        };
+        let triangles: Vec<_> = mesh.triangles.iter().filter(|triangle| is_seen(&triangle[..])).collect();
+        for triangle in &triangles {
             let normal = cross(&triangle.map(|node| positions[node]));
             triangle.iter().for_each(|&node| normals[node] += normal);
         }
-        for triangle in &mesh.triangles {
+        for triangle in triangles {
             let corners = triangle.map(|node| positions[node]);
             let colour = if cross(&corners).dot(&self.view.towards) >= 0.0 { FRONT } else { BACK };
             let smooth: Vector3<f64> = triangle.iter().map(|&node| normals[node]).sum();
@@ -68,12 +78,14 @@ impl<'v> Painter<'v> {
         // An edge lies as near as its triangle and before it.
         let nearer =
             2e-2 * self.view.extent(positions).iter().flatten().fold(0.0, |m: f64, c| m.max(c.abs()));
-        for edge in mesh.edges().unwrap_or_default().iter().filter(|edge| edge.right.is_none()) {
+        let edges = mesh.edges().unwrap_or_default();
+        let border = edges.iter().filter(|edge| edge.right.is_none());
+        for edge in border.filter(|edge| is_seen(&[edge.ends[0], edge.ends[1], edge.left])) {
             let ends = edge.ends.map(|node| positions[node]);
             let inner = positions[edge.left];
             let depth = self.depth(&[ends[0], ends[1], inner]) + nearer;
             let points = ends.iter().map(|&end| self.pixel(end)).collect();
-            self.items.push((depth, Item::Line(points, 2)));
+            self.items.push((depth, Item::Line(points, OUTLINE.stroke_width(2))));
         }
     }
 
@@ -84,17 +96,32 @@ impl<'v> Painter<'v> {
         self.items.push((depth + self.panel.scale.recip() * 20.0, item));
     }
 
+    /// Something flat below everything.
+    pub(super) fn floor(&mut self, outline: &[Vector3<f64>]) {
+        self.items.push((f64::MIN, Item::Face(outline.iter().map(|&p| self.pixel(p)).collect(), FLAT)));
+    }
+
     /// A level disc below everything.
     pub(super) fn disc(&mut self, centre: Vector3<f64>, radius: f64) {
-        let points = self.circle(centre, radius);
-        self.items.push((f64::MIN, Item::Face(points.iter().map(|&p| self.pixel(p)).collect(), FLAT)));
+        self.floor(&self.circle(centre, radius));
     }
 
     /// A level circle above everything.
     pub(super) fn ring(&mut self, centre: Vector3<f64>, radius: f64) {
         let mut points = self.circle(centre, radius);
         points.push(points[0]);
-        self.items.push((f64::MAX, Item::Line(points.iter().map(|&p| self.pixel(p)).collect(), 2)));
+        self.line(&points, OUTLINE.stroke_width(2));
+    }
+
+    /// A line above everything but arrows.
+    pub(super) fn line(&mut self, points: &[Vector3<f64>], style: ShapeStyle) {
+        let points = points.iter().map(|&point| self.pixel(point)).collect();
+        self.items.push((0.5 * f64::MAX, Item::Line(points, style)));
+    }
+
+    /// An arrow above everything, as it is seen.
+    pub(super) fn arrow(&mut self, from: Vector3<f64>, to: Vector3<f64>, style: ShapeStyle) {
+        self.items.push((f64::MAX, Item::Arrow([self.place(from), self.place(to)], style)));
     }
 
     /// What stands below a support, down to some point.
@@ -118,18 +145,14 @@ impl<'v> Painter<'v> {
     }
 
     /// Draws all, the farthest first.
-    pub(super) fn draw<B: DrawingBackend>(mut self, area: &DrawingArea<B, Shift>) -> Drawn<()>
-    where
-        B::ErrorType: 'static,
-    {
+    pub(super) fn draw(mut self, area: &Area<'_>) -> Drawn<()> {
         self.items.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, item) in self.items {
             match item {
                 Item::Face(points, colour) => area.draw(&Polygon::new(points, colour.filled()))?,
-                Item::Line(points, width) => {
-                    area.draw(&PathElement::new(points, OUTLINE.stroke_width(width)))?
-                }
+                Item::Line(points, style) => area.draw(&PathElement::new(points, style))?,
                 Item::Pin(at) => area.draw(&Circle::new(at, 5, OUTLINE.filled()))?,
+                Item::Arrow(ends, style) => draw_arrow(area, ends, style)?,
             }
         }
         Ok(())
@@ -143,12 +166,14 @@ impl<'v> Painter<'v> {
         let [r, g, b] = colour.map(|part| (part * share).round().clamp(0.0, 255.0) as u8);
         let seen: Vec<[f64; 2]> = corners.iter().map(|&corner| self.place(corner)).collect();
         let middle = [0, 1].map(|axis| seen.iter().map(|p| p[axis]).sum::<f64>() / seen.len() as f64);
-        let spread = |p: &[f64; 2]| {
-            let [x, y] = [p[0] - middle[0], p[1] - middle[1]];
-            let grown = 1.0 + OVERLAP / x.hypot(y).max(1.0);
+        let from_middle: Vec<[f64; 2]> = seen.iter().map(|p| [p[0] - middle[0], p[1] - middle[1]]).collect();
+        let farthest = from_middle.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+        // An edge lies about as far from the middle as the circle within.
+        let grown = 1.0 + (OVERLAP / inner_radius(&from_middle)).min(CORNER / farthest.max(1.0));
+        let spread = |[x, y]: &[f64; 2]| {
             ((middle[0] + grown * x).round() as i32, (middle[1] + grown * y).round() as i32)
         };
-        let item = Item::Face(seen.iter().map(spread).collect(), RGBColor(r, g, b));
+        let item = Item::Face(from_middle.iter().map(spread).collect(), RGBColor(r, g, b));
         self.items.push((self.depth(corners), item));
     }
 
@@ -179,7 +204,31 @@ impl<'v> Painter<'v> {
     }
 }
 
+/// Twice the area of a polygon over its length: the radius of the circle within, if it has one.
+fn inner_radius(corners: &[[f64; 2]]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let (area, length) = corners.iter().zip(next).fold((0.0, 0.0), |(area, length), ([x, y], [u, v])| {
+        (area + x * v - y * u, length + (u - x).hypot(v - y))
+    });
+    area.abs() / length.max(1.0)
+}
+
 /// Across a face, as long as twice the area of its first three corners.
 fn cross(corners: &[Vector3<f64>]) -> Vector3<f64> {
     (corners[1] - corners[0]).cross(&(corners[2] - corners[0]))
+}
+
+/// An arrow in one stroke, its head no longer than a third of it; a dot where it is too short to be seen.
+pub(super) fn draw_arrow(area: &Area<'_>, [from, to]: [[f64; 2]; 2], style: ShapeStyle) -> Drawn<()> {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    let pixel = |[x, y]: [f64; 2]| (x.round() as i32, y.round() as i32);
+    if length < 1.5 {
+        return Ok(area.draw(&Circle::new(pixel(from), 1, style.filled()))?);
+    }
+    let [x, y] = along.map(|part| part / length);
+    let head = HEAD.min(length / 3.0);
+    let barb = |side: f64| pixel([to[0] - head * (x + side * y), to[1] - head * (y - side * x)]);
+    let points = vec![pixel(from), pixel(to), barb(0.5), pixel(to), barb(-0.5)];
+    Ok(area.draw(&PathElement::new(points, style))?)
 }

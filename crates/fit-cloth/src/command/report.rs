@@ -1,0 +1,38 @@
+//! `fit-cloth report`: the page of a result folder, written again.
+
+use super::{Outcome, tell};
+use crate::failure::Failure;
+use crate::options::Telling;
+use crate::output::whole;
+use crate::page::Page;
+use clap::Args;
+use serde_json::json;
+use std::io::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "\
+Example:
+  fit-cloth fit fixtures/cotton-denim --out out/fit
+  fit-cloth report out/fit
+
+Writes report.html anew from the report.json beside it, after an update of the program, say. Every fit and comparison
+writes both, but for --no-report.";
+
+/// `fit-cloth report`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct ReportOptions {
+    /// The result folder of a fit or a comparison
+    pub dir: PathBuf,
+}
+
+/// Writes the page.
+///
+/// # Errors
+/// A folder without the data of a page, or with other data; what the operating system refuses.
+pub fn run(options: &ReportOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+    let page = Page::read(&options.dir)?;
+    let path = whole(|| page.write_again(&options.dir))?;
+    tell(telling, output, &format!("Written to {}", path.display()), &json!({ "page": path }))?;
+    Ok(Outcome::Done)
+}

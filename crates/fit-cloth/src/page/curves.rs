@@ -1,0 +1,96 @@
+//! A fit's curves, and the course that each took, as the page's charts take them.
+
+use crate::text::{self, NO_KNOWLEDGE};
+use cloth_fit::incremental::FitReport;
+use cloth_fit::report::{Histogram, Sample, StageReport};
+use cloth_sim::material::Component;
+use serde::{Deserialize, Serialize};
+
+/// A component's curve; one that was not observed has labels and a reason only.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Curve {
+    component: String,
+    observed: bool,
+    x_label: String,
+    y_label: String,
+    stiffness_label: String,
+    /// 201 rows: strain, stress and, where it is known, the band's two sides.
+    samples: Vec<Vec<f64>>,
+    points: Vec<Point>,
+    visited: [f64; 2],
+    histogram: Histogram,
+    /// Of the control values.
+    correlations: Vec<Vec<Option<f64>>>,
+    /// A sentence; then what was used and how it went.
+    verdict: String,
+    course: Vec<String>,
+}
+
+/// A control point as a row of the curve file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Point {
+    strain: f64,
+    stiffness: f64,
+    /// Half the 95 % band of the control value, as a share of it.
+    share: Option<f64>,
+    stress: f64,
+}
+
+/// The residual after every step of a curve's stages, over all their numbers of control points, N or m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Course {
+    name: String,
+    rms: Vec<f64>,
+}
+
+/// All components, observed or not.
+pub(super) fn curves(report: &FitReport) -> Vec<Curve> {
+    Component::ALL.into_iter().map(|component| curve(report, component)).collect()
+}
+
+fn curve(report: &FitReport, component: Component) -> Curve {
+    let [x_label, y_label] = text::curve_labels(component).map(String::from);
+    let stiffness_label = if component.is_bending() { "rigidity [N m]" } else { "stiffness [N/m]" }.into();
+    let empty =
+        Curve { component: component.to_string(), x_label, y_label, stiffness_label, ..Curve::default() };
+    let Some(stage) = report.stage(component).filter(|stage| stage.curve.observed) else {
+        let missing = text::missing(report, component);
+        return Curve { verdict: missing.unwrap_or_else(|| format!("{component} was given.")), ..empty };
+    };
+    let found = &stage.curve;
+    let sample = |sample: &Sample| {
+        let band = sample.band.into_iter().flatten();
+        [sample.strain, sample.stress].into_iter().chain(band).collect()
+    };
+    let point = |(i, point): (usize, &Sample)| {
+        let value = found.curve.stiffnesses()[i];
+        Point {
+            strain: point.strain,
+            // Of stretch and shear the control value as it stands in material.json, to the last bit.
+            stiffness: if component.is_bending() { point.stiffness } else { value },
+            share: found.half_bands[i].map(|half| half / value).filter(|share| *share < NO_KNOWLEDGE),
+            stress: point.stress,
+        }
+    };
+    let samples = &found.samples;
+    Curve {
+        observed: true,
+        samples: samples.iter().map(sample).collect(),
+        points: found.points.iter().enumerate().map(point).collect(),
+        visited: [samples[0].strain, samples[samples.len() - 1].strain],
+        histogram: found.histogram.clone(),
+        correlations: found.correlations.clone(),
+        verdict: text::verdict(stage),
+        course: text::course(stage),
+        ..empty
+    }
+}
+
+/// Every curve's course, over all passes.
+pub(super) fn courses(report: &FitReport) -> Vec<Course> {
+    let course = |stage: &StageReport| Course { name: stage.name(), rms: report.course(stage) };
+    report.last_stages().map(course).collect()
+}

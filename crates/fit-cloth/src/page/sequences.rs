@@ -1,0 +1,164 @@
+//! A fit's sequences frame by frame: shapes, forces on the clips, profiles.
+
+use super::fit::Frames;
+use crate::plot::{extension, forces::pulled_rows};
+use crate::shown::{ClipForce, Profile, clip_forces, profiles, vector};
+use base64::{Engine, engine::general_purpose::STANDARD};
+use cloth_fit::frame::{self, MeasurementSet, Phase};
+use cloth_fit::report::{ForceRow, SequenceReport};
+use cloth_fit::shapes::{FrameShape, Place, Shapes};
+use nalgebra::{Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// A coordinate that was not seen.
+const NOT_SEEN: i16 = i16::MIN;
+
+/// A sequence; arrays are little-endian, in base64.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Sequence {
+    name: String,
+    /// What the extension is.
+    extension: String,
+    /// Against gravity, or across the sheet.
+    up: [f64; 3],
+    /// Coordinates are middle + reach × value / 32767, m.
+    middle: [f64; 3],
+    reach: f64,
+    /// u32, three nodes each.
+    triangles: String,
+    /// f32, two coordinates a node, m.
+    material: String,
+    multi_stable: Vec<usize>,
+    /// What colours and arrows are measured by: m, –, N.
+    largest_distance: f64,
+    largest_strain: f64,
+    largest_force: f64,
+    frames: Vec<Frame>,
+    /// Of the clip that is pulled most.
+    forces: Vec<Force>,
+    profiles: Vec<Profile>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Frame {
+    frame: usize,
+    extension: f64,
+    /// i16, three coordinates a node.
+    simulated: String,
+    measured: Option<String>,
+    arrows: Vec<ClipForce>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Force {
+    frame: usize,
+    extension: f64,
+    phase: Phase,
+    measured: f64,
+    simulated: f64,
+}
+
+/// Those that took part.
+pub(super) fn sequences(set: &MeasurementSet, found: &[&SequenceReport], frames: Frames) -> Vec<Sequence> {
+    let measured = |name: &str| set.sequences.iter().find(|sequence| sequence.name == name);
+    found.iter().filter_map(|found| Some(sequence(measured(&found.name)?, found, frames))).collect()
+}
+
+fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) -> Sequence {
+    let shapes = &found.shapes;
+    let (middle, reach) = extent(shapes);
+    let pack = |places: &[Place]| packed(places, middle, reach);
+    let frame = |shape: &FrameShape| Frame {
+        frame: shape.frame,
+        extension: shape.extension,
+        simulated: pack(&shape.simulated),
+        measured: (!shape.measured.is_empty()).then(|| pack(&shape.measured)),
+        arrows: clip_forces(measured, found, shape.frame),
+    };
+    let frames: Vec<Frame> = match frames {
+        Frames::Shown => shapes.frames.iter().map(frame).collect(),
+        Frames::LeftOut => Vec::new(),
+    };
+    let forces =
+        frames.iter().flat_map(|frame| &frame.arrows).flat_map(|arrow| [arrow.measured, arrow.simulated]);
+    let upright = (-measured.gravity).try_normalize(0.0).unwrap_or_else(Vector3::z);
+    let force = |row: &&ForceRow| Force {
+        frame: row.frame,
+        extension: row.extension,
+        phase: row.phase,
+        measured: row.measured.abs(),
+        simulated: row.simulated.abs(),
+    };
+    // A mesh without a frame is of no use.
+    let encoded = |bytes: &mut dyn Iterator<Item = u8>| match frames.is_empty() {
+        true => String::new(),
+        false => STANDARD.encode(bytes.collect::<Vec<u8>>()),
+    };
+    let mut triangles = shapes.triangles.iter().flatten().flat_map(|&node| (node as u32).to_le_bytes());
+    let mut material = shapes.material.iter().flat_map(|m| [m.x, m.y]).flat_map(|c| (c as f32).to_le_bytes());
+    Sequence {
+        name: found.name.clone(),
+        extension: extension(found.kind).into(),
+        up: upright.into(),
+        middle,
+        reach,
+        triangles: encoded(&mut triangles),
+        material: encoded(&mut material),
+        multi_stable: found.multi_stable.clone(),
+        largest_distance: largest_distance(shapes),
+        largest_strain: largest_strain(shapes),
+        largest_force: forces.map(|force| Vector3::from(force).norm()).fold(0.0, f64::max),
+        forces: pulled_rows(&found.forces).iter().map(force).collect(),
+        profiles: profiles(measured, shapes),
+        frames,
+    }
+}
+
+/// The middle of all that is seen or simulated, and how far it reaches from there, m.
+fn extent(shapes: &Shapes) -> ([f64; 3], f64) {
+    let places = || shapes.frames.iter().flat_map(|frame| frame.simulated.iter().chain(&frame.measured));
+    let bound = |axis: usize, start: f32, rule: fn(f32, f32) -> f32| {
+        // NaN loses against any number.
+        f64::from(places().map(|place| place[axis]).fold(start, rule))
+    };
+    let low = [0, 1, 2].map(|axis| bound(axis, f32::INFINITY, f32::min));
+    let high = [0, 1, 2].map(|axis| bound(axis, f32::NEG_INFINITY, f32::max));
+    let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
+    let reach = (0..3).map(|axis| 0.5 * (high[axis] - low[axis])).fold(0.0, f64::max);
+    (middle, reach.max(f64::MIN_POSITIVE))
+}
+
+fn packed(places: &[Place], middle: [f64; 3], reach: f64) -> String {
+    let whole = |axis: usize, c: f32| match (f64::from(c) - middle[axis]) / reach * 32767.0 {
+        value if value.is_nan() => NOT_SEEN,
+        value => value.round().clamp(-32767.0, 32767.0) as i16,
+    };
+    let bytes = places.iter().flat_map(|place| [0, 1, 2].map(|axis| whole(axis, place[axis]).to_le_bytes()));
+    STANDARD.encode(bytes.flatten().collect::<Vec<u8>>())
+}
+
+/// The largest distance of a node seen from where it is simulated, m.
+fn largest_distance(shapes: &Shapes) -> f64 {
+    let pairs = shapes.frames.iter().flat_map(|frame| frame.simulated.iter().zip(&frame.measured));
+    let distance = |(a, b): (&Place, &Place)| (vector(*a) - vector(*b)).norm();
+    pairs.map(distance).fold(0.0, f64::max)
+}
+
+/// The largest eigenvalue of any triangle's Green strain.
+fn largest_strain(shapes: &Shapes) -> f64 {
+    let strain = |frame: &FrameShape, nodes: &[usize; 3]| {
+        let [a, b, c] = nodes.map(|node| vector(frame.simulated[node]));
+        let [p, q, r]: [Vector2<f64>; 3] = nodes.map(|node| shapes.material[node]);
+        let rest = nalgebra::Matrix2::from_columns(&[q - p, r - p]).try_inverse()?;
+        let gradient = nalgebra::Matrix3x2::from_columns(&[b - a, c - a]) * rest;
+        let green = 0.5 * (gradient.transpose() * gradient - nalgebra::Matrix2::identity());
+        Some(green.symmetric_eigenvalues().max())
+    };
+    let frames = shapes.frames.iter();
+    frames
+        .flat_map(|frame| shapes.triangles.iter().filter_map(move |nodes| strain(frame, nodes)))
+        .fold(0.0, f64::max)
+}

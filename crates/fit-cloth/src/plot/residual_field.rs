@@ -1,0 +1,63 @@
+//! Where a frame was seen beside its equilibrium, node by node, magnified.
+
+use super::chart::Drawn;
+use super::picture::{self, ArrowScale, Picture};
+use super::sheet::Sheet;
+use super::view::View;
+use super::{GREY, MEASURED, frame_title};
+use cloth_fit::frame::Sequence;
+use cloth_fit::report::SequenceReport;
+use nalgebra::Vector3;
+use plotters::style::Color;
+
+/// Width of the figure, in pixels.
+const WIDTH: f64 = 1080.0;
+/// Residuals are drawn so many times as long.
+const TIMES: f64 = 5.0;
+
+/// # Errors
+/// No frame with a shape.
+pub(super) fn draw(title: &str, sequence: &Sequence, found: &SequenceReport) -> Drawn<String> {
+    let sheet = Sheet::farthest(&found.shapes).ok_or("no frame")?;
+    let rms = sheet.rms.ok_or("no shape")?;
+    let table = sequence.table.as_ref();
+    let view = View::against(&sheet.mesh, table, sequence.gravity);
+    let vectors = sheet.mesh.positions.iter().zip(&sheet.measured);
+    let vectors = vectors.filter(|(_, seen)| seen.iter().all(|c| c.is_finite()));
+    let vectors: Vec<[Vector3<f64>; 2]> = vectors.map(|(at, seen)| [*at, at + TIMES * (seen - at)]).collect();
+    let largest =
+        vectors.iter().map(|[at, to]| 1e3 / TIMES * (to - at).norm()).fold(f64::MIN_POSITIVE, f64::max);
+    let style = MEASURED.stroke_width(2);
+    let all = sheet.mesh.len();
+    let mut caption = format!("measured − simulated ×{TIMES}, rms {:.3} mm", 1e3 * rms);
+    if vectors.len() < all {
+        caption += &format!(", {} of {all} nodes seen", vectors.len());
+    }
+    if found.multi_stable.contains(&sheet.frame) {
+        caption += ", one of several equilibria";
+    }
+    // What is seen of a table from its side.
+    let edge = table.map(|table| {
+        let [from, _, _, to] = sheet.table_top(table);
+        [from, to]
+    });
+    let picture = Picture {
+        title: caption,
+        view,
+        points: sheet
+            .mesh
+            .positions
+            .iter()
+            .chain(vectors.iter().flatten())
+            .chain(edge.iter().flatten())
+            .copied()
+            .collect(),
+        paint: Box::new(|painter| {
+            edge.iter().for_each(|edge| painter.line(edge, GREY.stroke_width(6)));
+            sheet.lines().for_each(|line| painter.line(&line, GREY.mix(0.5).stroke_width(1)));
+            vectors.iter().for_each(|&[from, to]| painter.arrow(from, to, style));
+        }),
+    };
+    let arrows = ArrowScale { metres: 1e-3 * TIMES, unit: "mm", style, name: "residual", largest };
+    picture::draw(&frame_title(title, found.kind, &sheet), WIDTH, &[picture], Some(arrows))
+}

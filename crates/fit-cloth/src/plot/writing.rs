@@ -1,0 +1,62 @@
+//! Text in figures.
+//!
+//! The reader's fonts are not known here: a character counts as 0.6 of the size, which is more than most take.
+
+use super::chart::Drawn;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Where a figure is drawn.
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Sizes of a title and of all else, in plotters' measure, in which text is so much smaller than it says.
+pub(super) const TITLE: i32 = 36;
+pub(super) const TEXT: i32 = 28;
+const MEASURE: f64 = 1.24;
+/// Below this it cannot be read.
+const SMALLEST: i32 = 20;
+
+/// Colour of text that belongs to no series.
+pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
+
+/// How wide a text is at most, in pixels.
+pub(super) fn width(text: &str, size: i32) -> i32 {
+    (0.6 * f64::from(size) / MEASURE * text.chars().count() as f64).ceil() as i32
+}
+
+/// Writes a line that begins, is centred or ends at a place; its middle has the place's height.
+pub(super) fn write(
+    area: &Area<'_>,
+    text: &str,
+    at: (i32, i32),
+    (size, place, colour): (i32, HPos, RGBColor),
+) -> Drawn<()> {
+    let style = ("sans-serif", size).into_font().color(&colour).pos(Pos::new(place, VPos::Center));
+    Ok(area.draw(&Text::new(text, at, style))?)
+}
+
+/// A number with a minus that is as wide as a digit.
+pub(super) fn signed(number: String) -> String {
+    number.replace('-', "−")
+}
+
+/// Writes a line no wider than so many pixels: smaller, and at last cut off.
+pub(super) fn write_within(
+    area: &Area<'_>,
+    most: i32,
+    text: &str,
+    at: (i32, i32),
+    (size, place, colour): (i32, HPos, RGBColor),
+) -> Drawn<()> {
+    let fits = |size: &i32| width(text, *size) <= most;
+    match (SMALLEST..=size).rev().find(fits) {
+        Some(size) => write(area, text, at, (size, place, colour)),
+        None => {
+            let characters = (0..text.chars().count()).rev();
+            let cut = |kept: usize| text.chars().take(kept).chain(['…']).collect::<String>();
+            let cut = characters.map(cut).find(|cut| width(cut, SMALLEST) <= most).unwrap_or_default();
+            write(area, &cut, at, (SMALLEST, place, colour))
+        }
+    }
+}

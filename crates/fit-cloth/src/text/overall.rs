@@ -1,0 +1,121 @@
+//! A whole fit in four sentences: how it went, how good, how sure, what to measure next.
+
+use super::{half_band, list};
+use cloth_fit::incremental::FitReport;
+use cloth_fit::report::{SequenceReport, StageReport};
+use cloth_sim::material::Component;
+
+/// What a reader who knows no details should know of a fit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Overall {
+    /// Every curve is known, and every stage came to its minimum.
+    pub sound: bool,
+    /// How many curves were fitted, given, not observed.
+    pub state: String,
+    /// Residuals where they are largest.
+    pub good: String,
+    /// Bands at the ends of the ranges seen.
+    pub sure: String,
+    /// Where another measurement would tell most.
+    pub next: String,
+}
+
+/// Judges a fit by its weakest parts.
+pub fn overall(report: &FitReport) -> Overall {
+    let observed: Vec<&StageReport> = report.last_stages().filter(|stage| stage.curve.observed).collect();
+    let missing: Vec<Component> =
+        Component::ALL.into_iter().filter(|&component| !report.knowledge.knows(component)).collect();
+    Overall {
+        sound: report.converged() && missing.is_empty(),
+        state: state(report, &observed, &missing),
+        good: good(report),
+        sure: sure(&observed),
+        next: next(report, &observed, &missing),
+    }
+}
+
+fn state(report: &FitReport, observed: &[&StageReport], missing: &[Component]) -> String {
+    let fitted: usize = observed.iter().map(|stage| stage.components.len()).sum();
+    let given = Component::ALL.len() - missing.len() - fitted;
+    let converged = if report.converged() { "Converged" } else { "NOT converged" };
+    let mut said = format!("{converged}: {fitted} of {} curves fitted", Component::ALL.len());
+    if given > 0 {
+        said += &format!(", {given} given");
+    }
+    if !missing.is_empty() {
+        said += &format!(", without a curve: {}", list(missing));
+    }
+    said + "."
+}
+
+fn good(report: &FitReport) -> String {
+    let sequences = report.sequences();
+    let worst = |value: &dyn Fn(&SequenceReport) -> Option<f64>| {
+        let valued = sequences.iter().filter_map(|(_, sequence)| {
+            Some((&sequence.name[..], value(sequence).filter(|value| value.is_finite())?))
+        });
+        valued.max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let force = worst(&|sequence| Some(sequence.force_rms? / sequence.force_largest)).map(|(name, share)| {
+        format!("Measured forces are met within {:.2} % of the largest (rms; {name})", 100.0 * share)
+    });
+    let shapes = if force.is_some() { "shapes" } else { "Measured shapes are met" };
+    let shape = worst(&|sequence| sequence.position_rms)
+        .map(|(name, far)| format!("{shapes} within {:.2} mm (rms; {name})", 1e3 * far));
+    match [force, shape].into_iter().flatten().collect::<Vec<_>>().join(", ") {
+        said if said.is_empty() => "Nothing was compared.".into(),
+        said => said + " where they are met worst.",
+    }
+}
+
+fn sure(observed: &[&StageReport]) -> String {
+    let known = |stage: &StageReport| stage.curve.samples.last().and_then(half_band);
+    let banded = observed.iter().filter_map(|stage| Some((stage.name(), known(stage)?)));
+    let widest = banded.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, half)| {
+        format!(
+            "At the ends of the ranges seen, curves are known to ± {:.1} % (95 %) or better; {name} is the least sure.",
+            100.0 * half
+        )
+    });
+    let unknown = list(observed.iter().filter(|stage| known(stage).is_none()).map(|stage| stage.name()));
+    let unknown = (!unknown.is_empty()).then(|| format!("How sure these are is not known: {unknown}."));
+    match [widest, unknown].into_iter().flatten().collect::<Vec<_>>().join(" ") {
+        said if said.is_empty() => "No curve was fitted.".into(),
+        said => said,
+    }
+}
+
+fn next(report: &FitReport, observed: &[&StageReport], missing: &[Component]) -> String {
+    let failed =
+        |component: &Component| report.failures.iter().any(|failure| failure.components.contains(component));
+    // A test that there is, and that tells nothing, is not asked for again.
+    let unseen =
+        list(missing.iter().filter(|component| report.stage(**component).is_none() && !failed(component)));
+    let untold = list(missing.iter().filter(|component| report.stage(**component).is_some()));
+    let widest = observed.iter().filter_map(|stage| Some((stage, widest_band(stage)?)));
+    let widest = widest.max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+    let frames = widest.map(|(stage, (place, _))| {
+        let place = match stage.components[0].is_bending() {
+            true => format!("a curvature of {place:.0} 1/m"),
+            false => format!("a strain of {place:.3}"),
+        };
+        format!("more frames of {} near {place}", stage.name())
+    });
+    let unseen = (!unseen.is_empty()).then(|| format!("a test that shows {unseen}"));
+    let untold = (!untold.is_empty()).then(|| format!("other frames, or another model, for {untold}"));
+    match [unseen, untold, frames].into_iter().flatten().collect::<Vec<_>>().join(", then ") {
+        said if said.is_empty() => "What would tell most is not known.".into(),
+        said => format!("What would tell most: {said}."),
+    }
+}
+
+/// Where a band is widest, and half its width over the curve's largest stress.
+pub(super) fn widest_band(stage: &StageReport) -> Option<(f64, f64)> {
+    let samples = &stage.curve.samples;
+    let largest = samples.iter().fold(f64::MIN_POSITIVE, |most, sample| most.max(sample.stress.abs()));
+    let widths = samples.iter().filter_map(|sample| {
+        let [low, high] = sample.band?;
+        Some((sample.strain, 0.5 * (high - low) / largest))
+    });
+    widths.max_by(|a, b| a.1.total_cmp(&b.1))
+}
