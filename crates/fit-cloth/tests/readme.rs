@@ -1,0 +1,59 @@
+//! The README's tour, command after command, as a reader types it.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// What stands between fences, by its lines; a line may go on behind a backslash.
+fn blocks(text: &str) -> Vec<Vec<String>> {
+    let inside = text.split("```").skip(1).step_by(2);
+    inside.map(|block| block.replace("\\\n", " ").lines().skip(1).map(String::from).collect()).collect()
+}
+
+/// The arguments of a command, without the remark behind it.
+fn command(line: &str) -> Option<Vec<String>> {
+    let line = line.split(" #").next().unwrap_or_default();
+    let arguments =
+        ["fit-cloth ", "cargo run --release -- "].iter().find_map(|program| line.strip_prefix(program))?;
+    Some(arguments.split_whitespace().map(String::from).collect())
+}
+
+/// A block that shows the forms of commands: SET stands for a set.
+fn is_synopsis(block: &[String]) -> bool {
+    block.iter().flat_map(|line| line.split_whitespace()).any(|word| word == "SET")
+}
+
+#[test]
+fn the_tour_can_be_taken() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    let blocks = blocks(&readme);
+    let folder = tempfile::tempdir().unwrap();
+    std::os::unix::fs::symlink(root.join("fixtures"), folder.path().join("fixtures")).unwrap();
+    let table =
+        blocks.iter().find(|block| block.iter().any(|line| line.starts_with("branch,clamp_distance_m")));
+    fs::write(folder.path().join("weft.csv"), table.unwrap().join("\n") + "\n").unwrap();
+
+    let mut taken = Vec::new();
+    for arguments in
+        blocks.iter().filter(|block| !is_synopsis(block)).flatten().filter_map(|line| command(line))
+    {
+        let output = Command::new(env!("CARGO_BIN_EXE_fit-cloth"))
+            .args(&arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        taken.push(arguments[0].clone());
+    }
+    for expected in
+        ["fit", "import", "stretch", "compare", "validate", "report", "rig", "simulate", "check", "curve"]
+    {
+        assert!(taken.iter().any(|name| name == expected), "no command {expected} among {taken:?}");
+    }
+    for written in ["out/material.json", "out/report.html", "my-knit-fit/curves/stretch-weft.csv"] {
+        assert!(folder.path().join(written).is_file(), "{written}");
+    }
+}
