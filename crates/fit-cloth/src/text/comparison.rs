@@ -3,97 +3,77 @@
 use super::{list, percent};
 use crate::page::Ranking;
 use cloth_fit::compare::{Comparison, Criterion, Distance, Row};
-use std::fmt::Write;
+
+/// What stands in a row, and how wide on a terminal; text on the left, numbers on the right.
+const COLUMNS: [(&str, usize); 14] = [
+    ("model", 15),
+    ("variant", 16),
+    ("parameters", 10),
+    ("fit", 8),
+    ("[N]", 9),
+    ("[mm]", 9),
+    ("validation", 10),
+    ("[N]", 9),
+    ("[mm]", 9),
+    ("left out", 16),
+    ("equilibria", 10),
+    ("factorisations", 14),
+    ("seconds", 7),
+    ("", 0),
+];
 
 /// One row a model and variant, best first, and what the figures are.
 pub fn comparison(comparison: &Comparison) -> String {
-    let mut text = format!(
-        "{:15}  {:16}  {:>10}  {:>8} {:>9} {:>9}  {:>10} {:>9} {:>9}  {:>16}  {:>10}  {:>14}  {:>7}\n",
-        "model",
-        "variant",
-        "parameters",
-        "fit",
-        "[N]",
-        "[mm]",
-        "validation",
-        "[N]",
-        "[mm]",
-        "left out",
-        "equilibria",
-        "factorisations",
-        "seconds"
-    );
-    for row in &comparison.rows {
-        let _ = writeln!(text, "{:15}  {:16}  {}", row.model, row.variant, figures(row));
-    }
-    let _ = write!(text, "\n{}\n", ranked_by(comparison.ranked_by));
-    text + &losses(comparison)
+    let names = COLUMNS.map(|(name, _)| name.to_string());
+    let rows = comparison.rows.iter().map(cells);
+    let lines: String = [names.into()].into_iter().chain(rows).map(|cells| line(&cells) + "\n").collect();
+    format!("{lines}\n{}\n{}", ranked_by(comparison.ranked_by), losses(comparison))
 }
 
-/// The same for a page: rows in cells.
+/// The same for a page.
 pub fn ranking(comparison: &Comparison) -> Ranking {
-    let columns = [
-        "model",
-        "variant",
-        "parameters",
-        "fit",
-        "[N]",
-        "[mm]",
-        "validation",
-        "[N]",
-        "[mm]",
-        "left out",
-        "factorisations",
-        "seconds",
-        "",
-    ];
-    let row = |row: &Row| {
-        let mut cells = vec![row.model.to_string(), row.variant.to_string()];
-        if let Some(failure) = &row.failure {
-            cells.push(format!("not fitted: {failure}"));
-            return cells;
-        }
-        let state = if row.converged { "" } else { "NOT converged" };
-        let measured = |distance: Option<Distance>| {
-            [vec![percent(distance.and_then(|distance| distance.relative))], in_units(distance).into()]
-                .concat()
-        };
-        cells.push(row.parameters.to_string());
-        cells.extend(measured(Some(row.fit)));
-        cells.extend(measured(row.validation));
-        cells.extend([
-            left_out(row),
-            row.factorisations.to_string(),
-            format!("{:.1}", row.seconds),
-            state.into(),
-        ]);
-        cells
-    };
     Ranking {
         by: ranked_by(comparison.ranked_by),
         notes: losses(comparison).lines().map(|loss| format!("{loss}.")).collect(),
-        columns: columns.map(String::from).into(),
-        rows: comparison.rows.iter().map(row).collect(),
+        columns: COLUMNS.map(|(name, _)| name.to_string()).into(),
+        rows: comparison.rows.iter().map(cells).collect(),
     }
 }
 
-fn figures(row: &Row) -> String {
+/// Cells below one another.
+fn line(cells: &[String]) -> String {
+    let cell = |(index, (cell, (name, width))): (usize, (&String, (&str, usize)))| match index {
+        0 => format!("{cell:width$}"),
+        1 => format!("  {cell:width$}"),
+        // In newtons and millimetres is said what is said before.
+        _ if name.starts_with('[') => format!(" {cell:>width$}"),
+        _ => format!("  {cell:>width$}"),
+    };
+    let line: String = cells.iter().zip(COLUMNS).enumerate().map(cell).collect();
+    line.trim_end().to_string()
+}
+
+fn cells(row: &Row) -> Vec<String> {
+    let names = [row.model.to_string(), row.variant.to_string()];
     if let Some(failure) = &row.failure {
-        return format!("not fitted: {failure}");
+        return [&names[..], &[format!("not fitted: {failure}")]].concat();
     }
-    let [fit_n, fit_mm] = in_units(Some(row.fit));
-    let [validation_n, validation_mm] = in_units(row.validation);
-    format!(
-        "{:10}  {:>8} {fit_n:>9} {fit_mm:>9}  {:>10} {validation_n:>9} {validation_mm:>9}  {:>16}  {:10}  {:14}  {:7.1}{}",
-        row.parameters,
-        percent(row.fit.relative),
-        percent(row.validation.and_then(|validation| validation.relative)),
-        left_out(row),
-        row.equilibria,
-        row.factorisations,
-        row.seconds,
-        if row.converged { "" } else { "  NOT converged" }
-    )
+    let told = |distance: Option<Distance>| {
+        let [newtons, millimetres] = in_units(distance);
+        [percent(distance.and_then(|distance| distance.relative)), newtons, millimetres]
+    };
+    let spent = [row.equilibria.to_string(), row.factorisations.to_string(), format!("{:.1}", row.seconds)];
+    let state = if row.converged { "" } else { "NOT converged" };
+    [
+        &names[..],
+        &[row.parameters.to_string()],
+        &told(Some(row.fit)),
+        &told(row.validation),
+        &[left_out(row)],
+        &spent,
+        &[state.into()],
+    ]
+    .concat()
 }
 
 /// Newtons and millimetres.
