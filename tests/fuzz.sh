@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes everything that fit-cloth reads, and curves on their way into a simulation: tests/fuzz/README.md.
 #
-#   tests/fuzz.sh SECONDS [TARGET …]    so long in all, as many targets at a time as there are cores (or JOBS)
+#   tests/fuzz.sh SECONDS [TARGET …]    so long in all, as many targets at a time as there are cores (or JOBS); with SEED
+#                                       set, the same inputs in the same order
 #   tests/fuzz.sh --merge [TARGET …]    adds what was found to the corpus, as few and small files as reach the same code
 #
 # Exit code 1 if a target crashed, hung or took too much memory. Needs a C++ compiler, for libFuzzer; no nightly toolchain.
@@ -49,6 +50,7 @@ fuzz() {
     mkdir -p "target/found/$1"
     dictionary=$(ls "dictionaries/$1.dict" 2>/dev/null || true)
     "$programs/$1" "target/found/$1" "corpus/$1" -max_total_time="$each" -max_len=4096 -timeout=10 -rss_limit_mb=1024 \
+        ${SEED:+-seed="$SEED"} \
         ${dictionary:+-dict="$dictionary"} -artifact_prefix="target/crashes/$1-" -print_final_stats=1 > "target/log/$1" 2>&1
     echo $? > "target/log/$1.code"
 }
