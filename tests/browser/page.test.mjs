@@ -163,7 +163,7 @@ for (const width of [1280, 390]) {
       const part = await pixels(page, "#curve canvas");
       differ(part, whole);
       await page.keyboard.press("ArrowRight");
-      assert.match(await page.locator("#curve .u-legend").innerText(), /strain\s*[0-9.]+/);
+      assert.match(await page.locator("#curve .u-legend").innerText(), /strain \[–\]\s*[0-9.]+/);
       await page.keyboard.press("0");
       await close();
     });

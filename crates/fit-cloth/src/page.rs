@@ -53,9 +53,9 @@ pub struct Page {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ranking {
-    /// What ranks, and what else is to be known.
+    /// What ranks, in words.
     pub by: String,
-    /// See `by`.
+    /// What no row tells: curves and predictions that are missing.
     pub notes: Vec<String>,
     /// Names of the columns.
     pub columns: Vec<String>,
@@ -93,8 +93,7 @@ impl Page {
     /// # Errors
     /// What the operating system refuses.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        // Strings and numbers; one that is not finite becomes null.
-        let data = serde_json::to_string(self).unwrap_or_default();
+        let data = self.data();
         write_file(&folder.join(DATA), data.as_bytes())?;
         self.write_html(folder, &data)
     }
@@ -104,8 +103,14 @@ impl Page {
     /// # Errors
     /// What the operating system refuses.
     pub fn write_again(&self, folder: &Path) -> Result<PathBuf> {
-        self.write_html(folder, &serde_json::to_string(self).unwrap_or_default())?;
+        self.write_html(folder, &self.data())?;
         Ok(folder.join(PAGE))
+    }
+
+    /// The text of `report.json`.
+    fn data(&self) -> String {
+        // Strings and finite numbers: nothing here can fail to be JSON.
+        serde_json::to_string(self).unwrap_or_default()
     }
 
     fn write_html(&self, folder: &Path, data: &str) -> Result<()> {

@@ -3,6 +3,7 @@
 mod chart;
 mod convergence;
 mod correlation;
+mod cycle;
 pub(crate) mod forces;
 mod measure;
 mod painter;

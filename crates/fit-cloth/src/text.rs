@@ -45,7 +45,7 @@ fn unit(stage: &StageReport) -> (&'static str, f64) {
 pub(crate) fn curve_labels(component: Component) -> [&'static str; 2] {
     match component.is_bending() {
         true => ["curvature [1/m]", "moment per width [N]"],
-        false => ["strain", "stress [N/m]"],
+        false => ["strain [–]", "stress [N/m]"],
     }
 }
 

@@ -224,6 +224,40 @@ fn a_comparison_shows_every_model_and_variant_beside_what_none_has_seen() {
 }
 
 #[test]
+fn the_verdict_says_what_is_missing_given_and_unsure() {
+    let (_keep, path) = fitted(&["--no-report"]);
+    let words = |more: &[&str]| {
+        let output = run(&[more, &["--nodes", "9x9", "--out", "said"]].concat(), &path);
+        assert!(output.status.success(), "{}", error(&output));
+        json(&path.join("said/report.json"))["fits"][0].clone()
+    };
+    let says = |fit: &Value, key: &str, expected: &str| {
+        assert!(fit[key].as_str().unwrap().contains(expected), "{key}: {}, not {expected}", fit[key]);
+    };
+    // The set has no test of diagonal bending.
+    let all = words(&["fit", "set"]);
+    says(&all, "state", "Converged: 5 of 6 curves fitted, without a curve: bend-diagonal.");
+    says(&all, "next", "What would tell most: a test that shows bend-diagonal, then more frames of");
+    says(&all, "good", "Measured forces are met within 0.");
+    assert_eq!(all["sound"], false);
+    let given = words(&["bend", "set", "--known", "out/material.json"]);
+    says(&given, "state", "Converged: 2 of 6 curves fitted, 3 given, without a curve: bend-diagonal.");
+    says(&given, "good", "Measured shapes are met within");
+    // Ring-2 springs do not tell a sheet off a table apart: the test is there, and is not asked for again.
+    let springs = words(&["fit", "set", "--model", "springs"]);
+    says(
+        &springs,
+        "state",
+        "Converged: 3 of 6 curves fitted, without a curve: bend-weft, bend-warp, bend-diagonal.",
+    );
+    says(
+        &springs,
+        "next",
+        "other frames, or another model, for bend-weft, bend-warp, bend-diagonal, then more frames of",
+    );
+}
+
+#[test]
 fn a_name_is_text_wherever_it_stands() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

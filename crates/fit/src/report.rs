@@ -109,6 +109,15 @@ pub struct SequenceReport {
     pub shapes: Shapes,
 }
 
+impl SequenceReport {
+    /// Frames that take no part: at rest, without a force, or without an equilibrium.
+    ///
+    /// * `dropped` — the frames without an equilibrium, of this and other sequences
+    pub fn left_out(&self, dropped: &[DroppedFrame]) -> usize {
+        self.at_rest + dropped.iter().filter(|frame| frame.sequence == self.name).count()
+    }
+}
+
 /// Loading against unloading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hysteresis {
@@ -237,7 +246,6 @@ impl StageReport {
 
     /// Frames of one of its sequences that take no part: at rest, without a force, or without an equilibrium.
     pub fn left_out(&self, sequence: &SequenceReport) -> usize {
-        let dropped = self.dropped.iter().filter(|dropped| dropped.sequence == sequence.name).count();
-        sequence.at_rest + dropped
+        sequence.left_out(&self.dropped)
     }
 }

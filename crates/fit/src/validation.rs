@@ -106,7 +106,7 @@ pub struct Validation {
 impl Validation {
     /// Frames of a sequence that take no part: at rest, or without an equilibrium.
     pub fn left_out(&self, sequence: &SequenceReport) -> usize {
-        sequence.at_rest + self.without_equilibrium(&sequence.name)
+        sequence.left_out(&self.prediction.dropped)
     }
 
     /// Names of the sequences of which no frame has an equilibrium, with the number of their frames.

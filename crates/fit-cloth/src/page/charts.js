@@ -71,4 +71,4 @@ new ResizeObserver(() => {
     const width = room(document.getElementById(id));
     if (Math.abs(width - chart.width) > 1) chart.setSize({ width, height: chart.height });
   }
-}).observe(document.querySelector("main"));
+}).observe(document.getElementById("page"));

@@ -29,8 +29,9 @@ function drawCurve(component, fits) {
   const [below, above] = ends([bottom, top, ...samples.flatMap((sample) => sample.slice(2))]);
   const height = top - bottom || 1;
   const extent = [Math.max(below, bottom - height) - 0.04 * height * (below < 0), Math.min(above, top + height) + 0.04 * height];
-  const range = (whole) => (_, low, high) => (low == null || low === high ? whole : [low, high]);
-  const scales = { x: { range: range([left, right]) }, y: { range: (_, low, high) => (low == null ? extent : [Math.max(low, extent[0]), Math.min(high + 0.04 * (high - low), extent[1])]) } };
+  const across = (_, low, high) => (low == null || low === high ? [left, right] : [low, high]);
+  const upwards = (_, low, high) => (low == null ? extent : [Math.max(low, extent[0]), Math.min(high + 0.04 * (high - low), extent[1])]);
+  const scales = { x: { range: across }, y: { range: upwards } };
   // What the measurement did not visit of the curve that is looked at, on either side.
   const shade = (u) => {
     if (!own.observed) return;

@@ -8,6 +8,7 @@ use cloth_fit::incremental::FitReport;
 use cloth_fit::material_file::ResidualEntry;
 use cloth_fit::prediction::Prediction;
 use cloth_fit::report::SequenceReport;
+use cloth_fit::simulation::DroppedFrame;
 use serde::{Deserialize, Serialize};
 
 /// Whether the shapes of all frames are part of a page. Those of a dozen fits would make it too large to send.
@@ -72,14 +73,8 @@ impl Fit {
         let predicted =
             || prediction.into_iter().flat_map(|found| found.sequences.iter().map(move |s| (found, s)));
         let overall = text::overall(report);
-        let residuals = fitted.iter().map(|(stage, sequence)| {
-            let entry = ResidualEntry::new(sequence, &stage.dropped);
-            Residual::new(entry, stage.left_out(sequence), false)
-        });
-        let more = predicted().map(|(found, sequence)| {
-            let lost = found.dropped.iter().filter(|dropped| dropped.sequence == sequence.name).count();
-            Residual::new(ResidualEntry::new(sequence, &found.dropped), sequence.at_rest + lost, true)
-        });
+        let residuals = fitted.iter().map(|(stage, sequence)| Residual::new(sequence, &stage.dropped, false));
+        let more = predicted().map(|(found, sequence)| Residual::new(sequence, &found.dropped, true));
         let all: Vec<&SequenceReport> = fitted
             .iter()
             .map(|(_, sequence)| *sequence)
@@ -116,10 +111,11 @@ impl Fit {
 }
 
 impl Residual {
-    fn new(entry: ResidualEntry, frames_left_out: usize, predicted: bool) -> Self {
+    fn new(sequence: &SequenceReport, dropped: &[DroppedFrame], predicted: bool) -> Self {
+        let entry = ResidualEntry::new(sequence, dropped);
         Self {
             predicted,
-            frames_left_out,
+            frames_left_out: sequence.left_out(dropped),
             sequence: entry.sequence,
             frames: entry.frames,
             multi_stable_frames: entry.multi_stable_frames.len(),

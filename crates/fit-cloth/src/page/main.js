@@ -108,6 +108,7 @@ function showSequence(name) {
   const other = next?.name !== sequence?.name;
   sequence = next;
   byId("frames-section").hidden = !sequence?.frames.length;
+  if (!sequence?.frames.length) play(false);
   if (!sequence) { clear("answer", "no test took part"); return; }
   byId("sequence").value = name;
   drawAnswer(name, shown());

@@ -69,7 +69,11 @@ pub(super) fn sequences(set: &MeasurementSet, found: &[&SequenceReport], frames:
 
 fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) -> Sequence {
     let shapes = &found.shapes;
-    let (middle, reach) = extent(shapes);
+    let shown = match frames {
+        Frames::Shown => &shapes.frames[..],
+        Frames::LeftOut => &[],
+    };
+    let (middle, reach) = extent(shown);
     let pack = |places: &[Place]| packed(places, middle, reach);
     let frame = |shape: &FrameShape| Frame {
         frame: shape.frame,
@@ -78,10 +82,7 @@ fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) 
         measured: (!shape.measured.is_empty()).then(|| pack(&shape.measured)),
         arrows: clip_forces(measured, found, shape.frame),
     };
-    let frames: Vec<Frame> = match frames {
-        Frames::Shown => shapes.frames.iter().map(frame).collect(),
-        Frames::LeftOut => Vec::new(),
-    };
+    let frames: Vec<Frame> = shown.iter().map(frame).collect();
     let forces =
         frames.iter().flat_map(|frame| &frame.arrows).flat_map(|arrow| [arrow.measured, arrow.simulated]);
     let upright = (-measured.gravity).try_normalize(0.0).unwrap_or_else(Vector3::z);
@@ -108,8 +109,8 @@ fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) 
         triangles: encoded(&mut triangles),
         material: encoded(&mut material),
         multi_stable: found.multi_stable.clone(),
-        largest_distance: largest_distance(shapes),
-        largest_strain: largest_strain(shapes),
+        largest_distance: largest_distance(shown),
+        largest_strain: largest_strain(shapes, shown),
         largest_force: forces.map(|force| Vector3::from(force).norm()).fold(0.0, f64::max),
         forces: pulled_rows(&found.forces).iter().map(force).collect(),
         profiles: profiles(measured, shapes),
@@ -118,8 +119,11 @@ fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) 
 }
 
 /// The middle of all that is seen or simulated, and how far it reaches from there, m.
-fn extent(shapes: &Shapes) -> ([f64; 3], f64) {
-    let places = || shapes.frames.iter().flat_map(|frame| frame.simulated.iter().chain(&frame.measured));
+fn extent(frames: &[FrameShape]) -> ([f64; 3], f64) {
+    if frames.is_empty() {
+        return ([0.0; 3], 1.0);
+    }
+    let places = || frames.iter().flat_map(|frame| frame.simulated.iter().chain(&frame.measured));
     let bound = |axis: usize, start: f32, rule: fn(f32, f32) -> f32| {
         // NaN loses against any number.
         f64::from(places().map(|place| place[axis]).fold(start, rule))
@@ -141,14 +145,14 @@ fn packed(places: &[Place], middle: [f64; 3], reach: f64) -> String {
 }
 
 /// The largest distance of a node seen from where it is simulated, m.
-fn largest_distance(shapes: &Shapes) -> f64 {
-    let pairs = shapes.frames.iter().flat_map(|frame| frame.simulated.iter().zip(&frame.measured));
+fn largest_distance(frames: &[FrameShape]) -> f64 {
+    let pairs = frames.iter().flat_map(|frame| frame.simulated.iter().zip(&frame.measured));
     let distance = |(a, b): (&Place, &Place)| (vector(*a) - vector(*b)).norm();
     pairs.map(distance).fold(0.0, f64::max)
 }
 
 /// The largest eigenvalue of any triangle's Green strain.
-fn largest_strain(shapes: &Shapes) -> f64 {
+fn largest_strain(shapes: &Shapes, frames: &[FrameShape]) -> f64 {
     let strain = |frame: &FrameShape, nodes: &[usize; 3]| {
         let [a, b, c] = nodes.map(|node| vector(frame.simulated[node]));
         let [p, q, r]: [Vector2<f64>; 3] = nodes.map(|node| shapes.material[node]);
@@ -157,8 +161,8 @@ fn largest_strain(shapes: &Shapes) -> f64 {
         let green = 0.5 * (gradient.transpose() * gradient - nalgebra::Matrix2::identity());
         Some(green.symmetric_eigenvalues().max())
     };
-    let frames = shapes.frames.iter();
     frames
+        .iter()
         .flat_map(|frame| shapes.triangles.iter().filter_map(move |nodes| strain(frame, nodes)))
         .fold(0.0, f64::max)
 }

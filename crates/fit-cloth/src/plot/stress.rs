@@ -34,7 +34,7 @@ pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
     // Moments are small numbers.
     let (names, unit, seen) = match component.is_bending() {
         true => ([x, "moment per width [mN]"], 1e3, "curvatures of all frames"),
-        false => (["strain [–]", y], 1.0, "strains of all frames"),
+        false => ([x, y], 1.0, "strains of all frames"),
     };
     let plotted = Plotted::new(stage, unit);
     let tallest = 110.0 * plotted.histogram.shares.iter().fold(0.0, |m: f64, share| m.max(*share));

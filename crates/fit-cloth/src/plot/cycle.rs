@@ -1,0 +1,51 @@
+//! Something measured and simulated in every frame, against the extension: the measured cycle thin, the model thick.
+
+use super::chart::{Axes, Drawn, figure};
+use super::{MEASURED, MODEL, extension};
+use cloth_fit::frame::Kind;
+use plotters::style::Color;
+
+/// A frame.
+pub(super) struct Point {
+    /// Its index in its sequence: lines are broken where frames are missing.
+    pub(super) frame: usize,
+    pub(super) extension: f64,
+    pub(super) measured: f64,
+    pub(super) simulated: f64,
+    /// Of the second kind.
+    pub(super) open: bool,
+}
+
+/// Draws frames in their order.
+///
+/// * `name` — what is measured, with its unit
+/// * `kinds` — what the legend calls measured frames of the first and of the second kind
+///
+/// # Errors
+/// No frame, or frames without extent.
+pub(super) fn draw(title: &str, kind: Kind, name: &str, points: &[Point], kinds: [&str; 2]) -> Drawn<String> {
+    if points.is_empty() {
+        return Err("no frames".into());
+    }
+    let widest = points.iter().map(|point| point.extension).fold(0.0, f64::max);
+    let values = || points.iter().flat_map(|point| [point.measured, point.simulated]);
+    let [low, high] = [values().fold(0.0, f64::min), values().fold(0.0, f64::max)];
+    let space = 0.06 * (high - low);
+    let axes = Axes {
+        title,
+        x: (extension(kind), 0.0..widest * 1.03),
+        y: (name, if low < 0.0 { low - space } else { 0.0 }..high + space),
+    };
+    let line = |value: fn(&Point) -> f64| {
+        points.iter().map(move |point| (point.frame, point.extension, value(point)))
+    };
+    figure(axes, |chart| {
+        chart.line(line(|point| point.simulated), MODEL.stroke_width(8), "model");
+        chart.line(line(|point| point.measured), MEASURED.stroke_width(2), "");
+        let styles = [MEASURED.filled(), MEASURED.stroke_width(2)];
+        for ((label, style), open) in kinds.into_iter().zip(styles).zip([false, true]) {
+            let shown = points.iter().filter(|point| point.open == open);
+            chart.dots(shown.map(|point| (point.extension, point.measured)), (6, style), label);
+        }
+    })
+}
