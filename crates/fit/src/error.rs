@@ -1,5 +1,6 @@
 //! What can be wrong with measurements and settings. A fit that does not converge is no error: see the report.
 
+use crate::inspection::Notice;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -46,6 +47,9 @@ pub enum Error {
         /// What was expected, and what to do.
         expected: String,
     },
+    /// A measurement that contradicts itself.
+    #[error("{0}")]
+    Contradiction(Notice),
     /// A setting is outside what it may be.
     #[error("{field}: found {found}, expected {expected}")]
     Setting {

@@ -10,6 +10,7 @@
 
 use crate::error::Result;
 use crate::frame::{Kind, MeasurementSet};
+use crate::inspection::{Inspection, Notice, Severity, inspect};
 use crate::knowledge::Knowledge;
 use crate::report::{Level, SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
@@ -58,6 +59,8 @@ pub struct FitReport {
     pub stages: Vec<StageReport>,
     /// Stages that failed; the others stand.
     pub failures: Vec<Failure>,
+    /// Contradictions within the measurements.
+    pub notices: Vec<Notice>,
     /// What is known now: what was given, and what was observed.
     pub knowledge: Knowledge,
 }
@@ -120,6 +123,12 @@ impl FitReport {
     /// The curves that were observed or given.
     pub fn curves(&self) -> &Curves {
         self.knowledge.curves()
+    }
+
+    /// The worst that was noticed of a sequence; `None` if it is beyond doubt.
+    pub fn doubt(&self, sequence: &str) -> Option<&Notice> {
+        let doubts = self.notices.iter().filter(|notice| notice.severity > Severity::Remark);
+        doubts.filter(|notice| notice.sequence == sequence).max_by_key(|notice| notice.severity)
     }
 
     /// Every curve that was observed came to its minimum.
@@ -193,11 +202,14 @@ pub fn resume(
     memory: &mut Memory<'_>,
     watch: &mut Watch<'_>,
 ) -> Result<FitReport> {
+    let inspection = inspect(set);
+    let Inspection { set, notices, .. } = &inspection;
     let mut report = FitReport {
         model: settings.model,
         variant: settings.variant,
         stages: Vec::new(),
         failures: Vec::new(),
+        notices: notices.clone(),
         knowledge: known.clone(),
     };
     let mut first_error = None;
@@ -214,7 +226,14 @@ pub fn resume(
             report.knowledge = knowledge.clone();
             continue;
         }
-        match stage::fit(set, &plan, &mut report.knowledge, settings, watch) {
+        let fitted = stage::fit(set, &plan, &mut report.knowledge, settings, watch);
+        // What no sequence shows any more was shown by one that was refused.
+        match fitted.and_then(|stage| {
+            stage.map_or_else(
+                || inspection.check_refusals(&plan.kinds).map(|()| None),
+                |stage| Ok(Some(stage)),
+            )
+        }) {
             Ok(None) => {}
             Ok(Some(stage)) => {
                 let finished = Finished { stage, knowledge: report.knowledge.clone() };

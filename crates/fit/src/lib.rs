@@ -23,6 +23,7 @@
 //! |---|---|
 //! | [`frame`] | what was measured: set, sequence, frame |
 //! | [`io`], [`strip`], [`rig`] | where it comes from: files, a tensile machine's table, a known cloth |
+//! | [`inspection`] | where a measurement contradicts itself, before anything is simulated |
 //! | [`curve_file`], [`curve_edit`] | a curve as a table; curves made wider, stronger, longer |
 //! | [`check`], [`repair`] | what would spoil a simulation, and the nearest curve that does not |
 //! | [`specimen`], [`replica`] | a simulation grid over the specimen; its cloth, what holds it, its frames |
@@ -84,6 +85,7 @@ pub mod frame;
 pub mod gap;
 pub mod gauss_newton;
 pub mod incremental;
+pub mod inspection;
 pub mod interventions;
 pub mod io;
 pub mod knowledge;

@@ -11,6 +11,7 @@ pub use entry::{Correlation, CurveEntry, ResidualEntry};
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
+use crate::inspection::Notice;
 use crate::io::json_file::{parse_version, unique};
 use crate::io::read_text;
 use crate::stage::{Constraints, Settings, Variant};
@@ -48,6 +49,9 @@ pub struct MaterialFile {
     /// Stages that came to nothing, and why.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
+    /// Contradictions within the measurements.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notices: Vec<Notice>,
     /// How the file came about.
     pub provenance: Provenance,
 }
@@ -108,6 +112,7 @@ impl MaterialFile {
                 .map(|(stage, sequence)| ResidualEntry::new(sequence, &stage.dropped))
                 .collect(),
             failures: report.failures.iter().map(Failure::in_words).collect(),
+            notices: report.notices.clone(),
             provenance: Provenance {
                 program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")).into(),
                 constraints: settings.constraints,

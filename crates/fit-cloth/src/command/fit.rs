@@ -60,6 +60,10 @@ pub fn run(
     for (model, failure) in &failures {
         warn(telling, &format!("{model} has no result: {}", failure.in_words()));
     }
+    // Every model was fitted to the same measurements.
+    for notice in results.iter().take(1).flat_map(|fitted| &fitted.report.notices) {
+        warn(telling, &notice.to_string());
+    }
     for Fitted { report, .. } in &results {
         for failure in &report.failures {
             warn(telling, &format!("{}: {}", report.model, failure.in_words()));
