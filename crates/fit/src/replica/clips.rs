@@ -4,8 +4,11 @@ use super::{ForceComponent, bad_geometry};
 use crate::error::Result;
 use crate::frame::{Frame, Kind, Sequence};
 use crate::measure::effective_shear;
-use crate::specimen::Specimen;
+use crate::specimen::{Specimen, bounds};
 use nalgebra::{Matrix3, Vector2, Vector3};
+
+/// Lines this near to one another, in cells, are one: rounding.
+const TIE: f64 = 1e-6;
 
 /// The nodes that clips hold, in groups: one a clip, and one for every pair of clips that share nodes, as two bars of a
 /// picture frame share a corner.
@@ -18,7 +21,11 @@ pub(super) struct Grip {
 }
 
 impl Grip {
-    /// What lies in the bounding box of each clip's vertices, give or take half a cell.
+    /// The nodes on the grid's lines nearest to each clip's vertices, and between them.
+    ///
+    /// The box around a clip's vertices is widened to whole lines: the centre of a crossed cell is held where all of its
+    /// cell is. By distance alone, half a cell, a clamp would hold a row of centres beyond its edge, and a strip cut on
+    /// the bias be too short to first order in the cell.
     ///
     /// # Errors
     /// Clips that claim the same node and disagree where it is; a clip without a node of its own.
@@ -28,17 +35,16 @@ impl Grip {
             group_of: vec![None; specimen.mesh.len()],
             groups: (0..clips).map(|clip| [clip, clip]).collect(),
         };
-        let [dx, dy] = specimen.grid.cell();
-        let margin = Vector2::new(dx, dy) * (0.5 * (1.0 + 1e-9));
+        let cell = Vector2::from(specimen.grid.cell());
         for (clip, gripped) in sequence.clips.iter().enumerate() {
             let places = gripped.vertices.iter().map(|&v| specimen.place(&sequence.mesh.positions[v]).xy());
-            let [low, high] = places
-                .fold([Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)], |[low, high], p| {
-                    [low.inf(&p), high.sup(&p)]
-                });
+            let [low, high] = bounds(places);
+            // Of two lines equally near both are held.
+            let low = low.component_div(&cell).map(|line| (line - 0.5 - TIE).ceil() - TIE);
+            let high = high.component_div(&cell).map(|line| (line + 0.5 + TIE).floor() + TIE);
             for node in 0..specimen.mesh.len() {
-                let p = specimen.mesh.positions[node].xy();
-                if p >= low - margin && p <= high + margin {
+                let line = specimen.mesh.positions[node].xy().component_div(&cell);
+                if line >= low && line <= high {
                     grip.claim(node, clip, sequence, specimen)?;
                 }
             }
