@@ -20,7 +20,7 @@ pub use stage::{course, stage};
 pub use study::{study, study_page};
 pub use summary::{as_published, missing, summary, summary_rows};
 pub use validation::validation;
-pub use verdict::verdict;
+pub use verdict::{verdict, verdict_of_fit};
 
 use cloth_fit::interventions::Interventions;
 use cloth_fit::report::{Sample, StageReport};
@@ -79,10 +79,9 @@ fn percent(share: Option<f64>) -> String {
 
 /// The strains or curvatures between which a stage's curve was seen.
 fn seen(stage: &StageReport) -> String {
-    let samples = &stage.curve.samples;
     let digits = if stage.components[0].is_bending() { 2 } else { 4 };
-    let [low, high] = [&samples[0], &samples[samples.len() - 1]].map(|sample| {
-        let text = format!("{:.digits$}", sample.strain);
+    let [low, high] = stage.curve.seen.map(|strain| {
+        let text = format!("{strain:.digits$}");
         // What rounds to zero has no sign.
         if text.trim_start_matches(['-', '0', '.']).is_empty() { text.replace('-', "") } else { text }
     });

@@ -10,7 +10,7 @@
 
 use crate::error::Result;
 use crate::frame::{Kind, MeasurementSet};
-use crate::inspection::{Inspection, Notice, Severity, inspect};
+use crate::inspection::{Inspection, Notice, inspect};
 use crate::knowledge::Knowledge;
 use crate::report::{Level, SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
@@ -123,12 +123,6 @@ impl FitReport {
     /// The curves that were observed or given.
     pub fn curves(&self) -> &Curves {
         self.knowledge.curves()
-    }
-
-    /// The worst that was noticed of a sequence; `None` if it is beyond doubt.
-    pub fn doubt(&self, sequence: &str) -> Option<&Notice> {
-        let doubts = self.notices.iter().filter(|notice| notice.severity > Severity::Remark);
-        doubts.filter(|notice| notice.sequence == sequence).max_by_key(|notice| notice.severity)
     }
 
     /// Every curve that was observed came to its minimum.
@@ -265,7 +259,7 @@ fn plans(wanted: &[Stage], variant: Variant) -> Vec<Plan> {
         plans.extend(stretches.iter().map(|components| stretch::plan(components)));
     }
     for pass in [1, 2] {
-        if wants(Stage::Shear) && (pass == 1 || wants(Stage::Bend)) {
+        if wants(Stage::Shear) {
             plans.push(shear::plan(pass));
         }
         if wants(Stage::Bend) {

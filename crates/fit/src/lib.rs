@@ -39,6 +39,7 @@
 //! | [`material`] | what a simulation must know of a fabric, from a fit or from hand
 //! | [`interventions`] | what was clamped, extrapolated, left out or tried again on the way, counted |
 //! | [`shapes`] | every frame's shape, simulated beside seen, to look at |
+//! | [`verdict`] | how far to trust a curve: green, amber, red |
 //! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
 //! | [`error`] | what is wrong with an input, and where |
 //!
@@ -111,3 +112,4 @@ pub mod strip;
 mod summary;
 pub mod uncertainty;
 pub mod validation;
+pub mod verdict;

@@ -96,7 +96,7 @@ impl MaterialFile {
                 .and_then(|file| file.curves.get(&component))
                 .map(|entry| CurveEntry { given: true, ..entry.clone() })
                 .unwrap_or_default(),
-            stage => CurveEntry::new(stage),
+            stage => CurveEntry::new(stage, &report.notices),
         };
         let sequences = report.sequences();
         let nodes = sequences.iter().map(|(_, sequence)| (sequence.name.clone(), sequence.nodes));

@@ -9,7 +9,7 @@ use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::report::Level;
 use crate::simulation::{Objective, Simulation};
 use crate::stage::{Constraints, Event, Settings, Watch};
-use crate::uncertainty::Covariance;
+use crate::uncertainty::neighbours_variance;
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
@@ -22,8 +22,7 @@ pub struct GrowthRule {
     pub gain: f64,
     /// What must fall; default the root mean square; published its square.
     pub measure: Measure,
-    /// Where the noise is known, a gain that chance does not explain pays however small its share is; default true;
-    /// published false.
+    /// A gain that chance does not explain pays however small its share is; default true; published false.
     pub significance: bool,
     /// So many numbers of points in a row that do not pay are the end; default 2; published 1.
     pub tries: usize,
@@ -49,16 +48,15 @@ impl GrowthRule {
     pub const PUBLISHED: Self =
         Self { gain: 0.01, measure: Measure::SumOfSquares, significance: false, tries: 1 };
 
-    /// True if a fall of the root mean square pays.
+    /// True if a fall of the sum of squares pays.
     ///
-    /// * `weight` — by which its square is ‖r/σ‖², where the noise is known
-    fn pays(&self, before: f64, after: f64, weight: Option<f64>) -> bool {
+    /// * `noise` — variance of a residual
+    fn pays(&self, before: f64, after: f64, noise: f64) -> bool {
         let left = match self.measure {
-            Measure::RootMeanSquare => 1.0 - self.gain,
-            Measure::SumOfSquares => (1.0 - self.gain).sqrt(),
+            Measure::RootMeanSquare => (1.0 - self.gain).powi(2),
+            Measure::SumOfSquares => 1.0 - self.gain,
         };
-        let gained = weight.map_or(0.0, |weight| weight * (before * before - after * after));
-        after < left * before || self.significance && gained > SIGNIFICANT
+        after < left * before || self.significance && before - after > SIGNIFICANT * noise
     }
 }
 
@@ -85,8 +83,8 @@ pub struct Growth {
 /// wander: ring-2 springs that lean on softer yarns.
 const FELT: f64 = 0.1;
 
-/// A fall of ‖r/σ‖² that two more points bring by chance once in a hundred. Where the noise is known, a gain above it
-/// counts however small its share is: beside a hysteresis of a fifth of the force, one per cent of the residual is much.
+/// A fall of ‖r/σ‖² that two more points bring by chance once in a hundred. A gain above it counts however small its share
+/// is: beside a hysteresis of a fifth of the force, one per cent of the residual is much.
 const SIGNIFICANT: f64 = 9.21;
 
 /// Fits with more and more control points, from the simulation's curve on.
@@ -101,7 +99,6 @@ pub fn grow(
     lowest_tangent: f64,
     watch: &mut Watch<'_>,
 ) -> Result<Growth> {
-    let measurements = simulation.measurements() as f64;
     // A curve with as many points as there are frames meets them all and says nothing; without a known noise one frame
     // more is needed to judge it by.
     let spare = usize::from(!simulation.noise_is_known());
@@ -110,17 +107,15 @@ pub fn grow(
         Objective::Positions => simulation.measurements(),
     };
     let most = settings.most_points().min(carriers.saturating_sub(spare)).max(1);
-    let unit = simulation.unit();
     let mut levels = Vec::new();
-    let mut kept: Option<(StiffnessCurve, Outcome, Domain, f64)> = None;
-    let weight = simulation.noise_is_known().then_some(measurements / (unit * unit));
+    let mut kept: Option<(StiffnessCurve, Outcome, Domain)> = None;
     let rule = settings.growth;
+    let tracks = simulation.tracks();
     let mut curve = simulation.curve().clone();
     let mut tries = 0;
     loop {
         let points = curve.len();
         let (outcome, domain, level) = fit_level(simulation, &curve, 1, settings, lowest_tangent, watch)?;
-        let rms = level.rms;
         levels.push(level);
         curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
@@ -128,16 +123,18 @@ pub fn grow(
             let stopped = "one stiffness hardly changes what is compared".to_string();
             return Ok(Growth { curve, outcome, domain, levels, stopped });
         }
-        let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
         let all = points >= most;
+        // What was declared may be too large: neighbours then differ by less.
+        let noise = neighbours_variance(&outcome.residual, &tracks);
+        let noise = if simulation.noise_is_known() { noise.min(1.0) } else { noise };
         let best = match kept {
-            Some(best) if !told_apart || !rule.pays(best.3, rms, weight) => {
+            Some(best) if !rule.pays(best.1.sum_of_squares, outcome.sum_of_squares, noise) => {
                 tries += 1;
                 best
             }
             _ => {
                 tries = 0;
-                (curve.clone(), outcome, domain, rms)
+                (curve.clone(), outcome, domain)
             }
         };
         if all || tries == rule.tries {
@@ -154,7 +151,7 @@ pub fn grow(
                     100.0 * rule.gain
                 ),
             };
-            let (mut curve, mut outcome, domain, _) = best;
+            let (mut curve, mut outcome, domain) = best;
             if simulation.is_whitened() {
                 let (settled, _, level) =
                     fit_level(simulation, &curve, MOST_WHITENINGS, settings, lowest_tangent, watch)?;

@@ -77,6 +77,8 @@ pub struct Replica {
     pub force_noise: Option<f64>,
     /// Standard deviation of a vertex coordinate, m, where known.
     pub position_noise: Option<f64>,
+    /// kg/m².
+    pub areal_density: f64,
     /// Weight per area, N/m².
     pub weight: Vector3<f64>,
     /// The lines along a table's edge.
@@ -168,6 +170,7 @@ impl Replica {
             frames_at_rest: 0,
             vertices_left_out: 0,
             planar: false,
+            areal_density: parts.areal_density,
             weight: gravity * parts.areal_density,
             lines: None,
             force_noise: noise.and_then(|noise| noise.force_n),
@@ -239,6 +242,12 @@ impl Replica {
         self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
     }
 
+    /// True if a sheet between clips moves in space, and was seen to leave its plane or not seen at all.
+    pub fn may_buckle(&self) -> bool {
+        let unseen = |frame: &ReplicaFrame| frame.observed.is_none() || self.is_buckled(frame);
+        !self.planar && self.lines.is_none() && self.frames.iter().any(unseen)
+    }
+
     /// True if a sheet between clips was seen to leave its plane, and may do so.
     pub fn is_buckled(&self, frame: &ReplicaFrame) -> bool {
         let seen = frame.observed.as_ref().is_some_and(|x| !seen_flat(x, self.position_noise));
@@ -261,10 +270,15 @@ impl Replica {
             .map(|frame| blend.shape(&specimen.mesh, |node| grip.place(specimen, frame, node)))
             .collect();
         let bends = parts.components.iter().any(|component| component.is_bending());
+        // A sheared sheet that nobody saw may have buckled.
+        let leaves_plane = |shape: &Option<Vec<f64>>| match shape {
+            Some(x) => !seen_flat(x, self.position_noise),
+            None => matches!(sequence.kind, Kind::Shear | Kind::ComplexShear),
+        };
         self.planar = parts.flat
             || gravity.z == 0.0
                 && starts.iter().all(|x| is_planar(x, &grip.group_of, specimen))
-                && !(bends && shapes.iter().flatten().any(|x| !seen_flat(x, self.position_noise)));
+                && !(bends && shapes.iter().any(leaves_plane));
         if parts.flat {
             starts.iter_mut().for_each(|x| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 0.0));
         }

@@ -25,13 +25,16 @@ pub struct CurveReport {
     pub deviations: Vec<Option<f64>>,
     /// Half the 95 % band of each control value; `None` where no frame sees it.
     pub half_bands: Vec<Option<f64>>,
-    /// The strains that the measurement visited: from 0, or from the smallest where that is negative; bending: sizes.
+    /// The strains that the measurement visited; shear and bending: their sizes.
     pub visited: [f64; 2],
+    /// The same as the curve file has it. Bending: curvatures, 1/m.
+    pub seen: [f64; 2],
     /// Share of the range of control points that was visited, 0 … 1.
     pub share_visited: f64,
-    /// 201 rows over the visited range. Bending: over curvature.
+    /// 201 rows from rest, or from the smallest strain where that is negative, to the largest that was visited; without a
+    /// band below those that were. Bending: over curvature.
     pub samples: Vec<Sample>,
-    /// How often strains were met, over the visited range. Bending: over curvature.
+    /// How often strains were met, over the same range. Bending: over curvature.
     pub histogram: Histogram,
     /// How many directions of the control values the data see.
     pub rank: usize,
@@ -94,6 +97,8 @@ pub struct SequenceReport {
     pub force_rms: Option<f64>,
     /// Largest measured force component, N; 0 if none was measured.
     pub force_largest: f64,
+    /// How far its frames went at most: see [`ReplicaFrame`](crate::replica::ReplicaFrame::extension).
+    pub extension: f64,
     /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
     pub position_rms: Option<f64>,
     /// Frames whose residual stands out from its neighbours', the farthest first: a slip, or a wrong sign; where no force

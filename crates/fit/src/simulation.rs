@@ -95,6 +95,9 @@ pub struct Task {
     pub robust: Option<Robust>,
 }
 
+/// A gap so many times as wide as the widest between frames is no longer bridged: frames are rarely spaced evenly.
+const BRIDGED: f64 = 2.0;
+
 type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
 
 /// A stage's replicas under one unknown curve.
@@ -233,40 +236,49 @@ impl<'a> Simulation<'a> {
         forces
     }
 
-    /// The 1st and 99th percentile of the fitted components' strains over all states; of their size where the curve is odd
-    /// and bends either way alike.
+    /// The range of the fitted components' strains over all states, from the 1st to the 99th percentile; of their size where
+    /// the curve is odd, so that either way tells of it alike.
+    ///
+    /// It starts at rest, where stress is known without a measurement, if the gap from there is about as wide as those
+    /// between frames.
     pub fn visited(&self) -> [f64; 2] {
-        let bends = self.bends();
         let mut strains: Vec<f64> = self.strains().into_iter().map(|[strain, _]| strain).collect();
         strains.sort_by(f64::total_cmp);
         let percentile = |share: f64| {
             let place = share * strains.len().saturating_sub(1) as f64;
             strains.get(place.round() as usize).copied().unwrap_or(0.0)
         };
-        [if bends { 0.0 } else { percentile(0.01) }, percentile(0.99)]
+        let [low, high] = [percentile(0.01), percentile(0.99)];
+        [if low > BRIDGED * self.widest_gap() { low } else { low.min(0.0) }, high.max(0.0)]
     }
 
-    /// The fitted components' strains over all states, each with the area, m², that it stands for; of bending their sizes.
+    /// The widest gap between the mean strains of frames that follow one another in strain.
+    fn widest_gap(&self) -> f64 {
+        let of_frame = |s: Settled<'_>| {
+            let strains: Vec<f64> = self.sized_strains(&s).map(|[strain, _]| strain).collect();
+            strains.iter().sum::<f64>() / strains.len().max(1) as f64
+        };
+        let mut means: Vec<f64> = self.settled().map(of_frame).collect();
+        means.sort_by(f64::total_cmp);
+        means.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+    }
+
+    /// The fitted components' strains over all states, each with the area, m², that it stands for; where the curve is odd,
+    /// their sizes.
     pub fn strains(&self) -> Vec<[f64; 2]> {
-        let bends = self.bends();
-        let sized = |[strain, area]: [f64; 2]| [if bends { strain.abs() } else { strain }, area];
-        self.settled()
-            .flat_map(|s| {
-                self.task.fitted.iter().flat_map(move |&c| s.replica.cloth(s.frame).strains(c, s.x))
-            })
-            .map(sized)
-            .collect()
+        self.settled().flat_map(|s| self.sized_strains(&s).collect::<Vec<_>>()).collect()
     }
 
-    fn bends(&self) -> bool {
-        self.task.fitted.iter().any(|component| component.is_bending())
+    fn sized_strains(&self, settled: &Settled<'_>) -> impl Iterator<Item = [f64; 2]> {
+        let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
+        let sized = move |[strain, area]: [f64; 2]| [if odd { strain.abs() } else { strain }, area];
+        let Settled { replica, frame, x, .. } = *settled;
+        self.task.fitted.iter().flat_map(move |&c| replica.cloth(frame).strains(c, x)).map(sized)
     }
 
     /// The largest strain that control points should reach.
     pub fn reach(&self) -> f64 {
-        let [low, high] = self.visited();
-        let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
-        (if odd { high.max(-low) } else { high }).max(f64::MIN_POSITIVE)
+        self.visited()[1].max(f64::MIN_POSITIVE)
     }
 
     /// Vertices that were seen too far off a table's lines, over all frames.

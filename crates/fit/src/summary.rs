@@ -19,16 +19,20 @@ pub(crate) fn curve_report(
     observed: bool,
 ) -> CurveReport {
     let Growth { curve, outcome, domain, .. } = growth;
-    let [low, high] = simulation.visited();
-    let visited = [low.min(0.0), high.max(0.0)];
+    let visited @ [low, high] = simulation.visited();
+    // A curve starts at rest, wherever what was seen of it does.
+    let range = [low.min(0.0), high];
     let slack = &domain.rows * &outcome.point - &domain.bounds;
     let last = curve.strains()[curve.len() - 1];
     let rows = Rows { curve: &curve, covariance, rolled: rolled(simulation) };
+    let seen = visited.map(|strain| rows.place(strain));
+    let mut samples = rows.over(range);
+    samples.iter_mut().filter(|sample| sample.strain < seen[0]).for_each(|sample| sample.band = None);
     CurveReport {
         observed,
         points: curve.strains().iter().map(|&strain| rows.at(rows.place(strain))).collect(),
-        samples: rows.over(visited),
-        histogram: rows.histogram(visited, &simulation.strains()),
+        samples,
+        histogram: rows.histogram(range, &simulation.strains()),
         deviations: covariance.standard_deviations(),
         half_bands: covariance.half_bands(),
         rank: covariance.rank,
@@ -36,7 +40,8 @@ pub(crate) fn curve_report(
         correlations: covariance.correlations(),
         active_constraints: slack.iter().filter(|s| s.abs() <= 1e-9 * outcome.point.amax()).count(),
         visited,
-        share_visited: if last > 0.0 { (visited[1].max(-visited[0]) / last).min(1.0) } else { 1.0 },
+        seen,
+        share_visited: if last > 0.0 { ((high - low.max(0.0)) / last).min(1.0) } else { 1.0 },
         curve,
     }
 }
@@ -62,16 +67,16 @@ struct Rows<'a> {
 
 impl Rows<'_> {
     /// Evenly spaced rows over a range of strains.
-    fn over(&self, visited: [f64; 2]) -> Vec<Sample> {
-        let [low, high] = visited.map(|strain| self.place(strain));
+    fn over(&self, range: [f64; 2]) -> Vec<Sample> {
+        let [low, high] = range.map(|strain| self.place(strain));
         (0..SAMPLES).map(|i| self.at(low + (high - low) * i as f64 / (SAMPLES - 1) as f64)).collect()
     }
 
     /// How often the strains within a range were met.
     ///
     /// * `strains` — each with the area it stands for
-    fn histogram(&self, visited: [f64; 2], strains: &[[f64; 2]]) -> Histogram {
-        let range @ [low, high] = visited.map(|strain| self.place(strain));
+    fn histogram(&self, range: [f64; 2], strains: &[[f64; 2]]) -> Histogram {
+        let range @ [low, high] = range.map(|strain| self.place(strain));
         let all: f64 = strains.iter().map(|[_, area]| area).sum();
         let mut shares = vec![0.0; BINS];
         for [strain, area] in strains {
@@ -121,8 +126,8 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     let mut reports: Vec<SequenceReport> = Vec::new();
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut positions: Vec<(f64, usize)> = Vec::new();
-    // Frames with the distance of their shape, and the largest overhang, where shapes alone are compared.
-    let mut shapes: Vec<(Vec<(usize, f64)>, f64)> = Vec::new();
+    // Frames with the distance of their shape.
+    let mut shapes: Vec<Vec<(usize, f64)>> = Vec::new();
     for (settled, simulated) in simulation.settled().zip(forces) {
         let Settled { replica, frame, x, multi_stable } = settled;
         let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
@@ -136,6 +141,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 nodes: [grid.columns, grid.rows],
                 force_rms: None,
                 force_largest: 0.0,
+                extension: 0.0,
                 position_rms: None,
                 outliers: Vec::new(),
                 multi_stable: Vec::new(),
@@ -145,11 +151,12 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
             });
             sums.push([0.0; 4]);
             positions.push((0.0, 0));
-            shapes.push((Vec::new(), 0.0));
+            shapes.push(Vec::new());
             reports.len() - 1
         });
         let report = &mut reports[at];
         report.frames += 1;
+        report.extension = report.extension.max(frame.extension);
         report.shapes.push(&settled);
         if multi_stable {
             report.multi_stable.push(frame.index);
@@ -199,18 +206,17 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
         positions[at].0 += squares;
         positions[at].1 += seen;
         if seen > 0 {
-            shapes[at].0.push((frame.index, (squares / seen as f64).sqrt()));
-            shapes[at].1 = frame.extension.max(shapes[at].1);
+            shapes[at].push((frame.index, (squares / seen as f64).sqrt()));
         }
     }
-    for (((report, [up, up_square, down, down_square]), (square, seen)), (shapes, overhang)) in
+    for (((report, [up, up_square, down, down_square]), (square, seen)), shapes) in
         reports.iter_mut().zip(sums).zip(positions).zip(shapes)
     {
         let squares: f64 = report.forces.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
         let count = report.forces.len();
         report.force_rms = (count > 0).then(|| (squares / count as f64).sqrt());
         report.outliers = match count {
-            0 => shape_outliers(&shapes, overhang),
+            0 => shape_outliers(&shapes, report.extension),
             _ => force_outliers(&report.forces),
         };
         report.position_rms = (seen > 0).then(|| (square / seen as f64).sqrt());

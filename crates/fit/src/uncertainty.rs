@@ -41,7 +41,7 @@ impl Scatter {
     /// Judges the residuals of a fit.
     ///
     /// * `residual` — one entry a measurement
-    /// * `jacobian` — its rows; rows of zeros say nothing and are left out
+    /// * `jacobian` — its rows; those of zeros are of what no parameter can move, and are left out, small ones are not
     /// * `tracks` — which measurements follow one another, in order
     /// * `known` — the noise, if it was given
     pub fn new(
@@ -51,8 +51,7 @@ impl Scatter {
         tracks: &[Vec<usize>],
         known: Option<f64>,
     ) -> Self {
-        let largest = jacobian.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
-        let informative: Vec<bool> = jacobian.row_iter().map(|row| row.norm() > 1e-9 * largest).collect();
+        let informative: Vec<bool> = jacobian.row_iter().map(|row| row.amax() > 0.0).collect();
         let measurements = informative.iter().filter(|&&seen| seen).count();
         let freedom = measurements.saturating_sub(rank);
         let square = |i: usize| residual[i] * residual[i];
@@ -64,7 +63,7 @@ impl Scatter {
         };
         let exceeds = freedom > 0
             && match known {
-                Some(_) => sum > chi_square_99(freedom as f64) * variance,
+                Some(_) => sum > chi_square(freedom as f64, Z_99) * variance,
                 None => {
                     // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
                     let n = measurements as f64;
@@ -86,18 +85,33 @@ impl Scatter {
 }
 
 impl Scatter {
+    /// True if less is left than the given noise leaves in one of a hundred fits: it was declared too large.
+    pub fn noise_is_overstated(&self) -> bool {
+        let freedom = self.freedom as f64;
+        self.known
+            && freedom > 0.0
+            && self.residual.powi(2) * freedom < chi_square(freedom, -Z_99) * self.noise.powi(2)
+    }
+
     /// The same in other units.
     pub fn times(self, unit: f64) -> Self {
         Self { noise: self.noise * unit, residual: self.residual * unit, misfit: self.misfit * unit, ..self }
     }
 }
 
-/// Variance from differences of neighbours, in which a smooth misfit cancels; `None` where nothing has a neighbour.
+/// Variance of the noise in residuals from differences of neighbours; their mean square where nothing has a neighbour.
+pub(crate) fn neighbours_variance(residual: &DVector<f64>, tracks: &[Vec<usize>]) -> f64 {
+    let mean_square = residual.norm_squared() / residual.len().max(1) as f64;
+    successive_variance(residual, tracks, &vec![true; residual.len()]).unwrap_or(mean_square)
+}
+
+/// Variance from differences of neighbours, in which a smooth misfit cancels; `None` where nothing has a neighbour. A
+/// reading that was only repeated tells nothing of noise.
 fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informative: &[bool]) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for track in tracks {
         let seen: Vec<usize> = track.iter().copied().filter(|&i| informative[i]).collect();
-        for pair in seen.windows(2) {
+        for pair in seen.windows(2).filter(|pair| residual[pair[0]] != residual[pair[1]]) {
             sum += (residual[pair[1]] - residual[pair[0]]).powi(2);
             count += 1;
         }
@@ -105,10 +119,12 @@ fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informati
     (count > 0).then(|| sum / (2.0 * count as f64))
 }
 
-/// 99 % quantile of the χ² distribution (Wilson and Hilferty 1931).
-fn chi_square_99(freedom: f64) -> f64 {
+/// Quantile of the χ² distribution (Wilson and Hilferty 1931).
+///
+/// * `z` — the standard normal one
+fn chi_square(freedom: f64, z: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
-    freedom * (1.0 - spread + Z_99 * spread.sqrt()).powi(3)
+    freedom * (1.0 - spread + z * spread.sqrt()).max(0.0).powi(3)
 }
 
 /// 97.5 % quantile of Student's t (Cornish–Fisher expansion, within 1 % from 3 degrees of freedom on; tabled below).
@@ -187,6 +203,11 @@ impl Covariance {
     /// Adds what comes from the errors of other parameters: G Cov(q) Gᵀ.
     pub fn carry(&mut self, gain: &DMatrix<f64>, covariance: &DMatrix<f64>) {
         self.matrix += gain * covariance * gain.transpose();
+    }
+
+    /// Adds an error of a known direction, whose size is within ± 1 in 95 of 100 cases.
+    pub fn widen(&mut self, direction: &DVector<f64>) {
+        self.matrix += direction * direction.transpose() / Z_975.powi(2);
     }
 
     /// Half the width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave nothing to judge it by.
@@ -303,7 +324,7 @@ mod tests {
             assert!((student_975(freedom) / t - 1.0).abs() < 0.01);
         }
         for (freedom, chi) in [(5.0, 15.086), (20.0, 37.566), (100.0, 135.807)] {
-            assert!((chi_square_99(freedom) / chi - 1.0).abs() < 0.01);
+            assert!((chi_square(freedom, Z_99) / chi - 1.0).abs() < 0.01);
         }
     }
 }

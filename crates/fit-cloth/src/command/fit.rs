@@ -239,8 +239,9 @@ fn tell_model(
     }
     writeln!(output, "{}", text::residuals(report))?;
     for stage in report.last_stages() {
-        writeln!(output, "{}", text::verdict(stage))?;
+        writeln!(output, "{}", text::verdict(stage, &report.notices))?;
     }
+    writeln!(output, "\n{}", text::verdict_of_fit(report))?;
     writeln!(output)?;
     if goal == Goal::All {
         writeln!(output, "{}", text::summary(report))?;

@@ -80,10 +80,10 @@ fn curve(report: &FitReport, component: Component) -> Curve {
         observed: true,
         samples: samples.iter().map(sample).collect(),
         points: found.points.iter().enumerate().map(point).collect(),
-        visited: [samples[0].strain, samples[samples.len() - 1].strain],
+        visited: found.seen,
         histogram: found.histogram.clone(),
         correlations: found.correlations.clone(),
-        verdict: text::verdict(stage),
+        verdict: text::verdict(stage, &report.notices),
         course: text::course(stage),
         ..empty
     }

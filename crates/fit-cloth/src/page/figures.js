@@ -6,8 +6,8 @@ function drawCurve(component, fits) {
   const curves = fits.map((fit) => [fit, fit.curves.find((c) => c.component === component)]).filter(([, curve]) => curve.observed);
   // The first one comes last, above the others.
   for (const [fit, curve] of [...curves].reverse()) {
-    const stroke = colourOf(fit), column = (i) => curve.samples.map((sample) => sample[i]);
-    const banded = curve.samples.every((sample) => sample.length === 4);
+    const stroke = colourOf(fit), column = (i) => curve.samples.map((sample) => sample[i] ?? null);
+    const banded = curve.samples.some((sample) => sample.length === 4);
     tables.push([column(0), column(1), ...(banded ? [column(2), column(3)] : [])]);
     const sides = (u, at, index) => (banded && at != null ? ` (${short(u.data[index + 1]?.[at])} … ${short(u.data[index + 2]?.[at])})` : "");
     series.push({ label: labelOf(fit), stroke, width: 2.5, dash: dashOf(fit), value: (u, v, index, at) => short(v) + sides(u, at, index) });

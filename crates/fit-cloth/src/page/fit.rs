@@ -9,6 +9,7 @@ use cloth_fit::material_file::ResidualEntry;
 use cloth_fit::prediction::Prediction;
 use cloth_fit::report::SequenceReport;
 use cloth_fit::simulation::DroppedFrame;
+use cloth_fit::verdict::Grade;
 use serde::{Deserialize, Serialize};
 
 /// Whether the shapes of all frames are part of a page. Those of a dozen fits would make it too large to send.
@@ -26,8 +27,11 @@ pub enum Frames {
 pub struct Fit {
     model: String,
     variant: String,
-    /// All curves are known, and the fit converged.
+    /// The verdict is green.
     sound: bool,
+    /// How far to trust it, and why not farther.
+    #[serde(default)]
+    verdict: String,
     /// In words: what was fitted to what, how it went, how good, how sure, what to measure next.
     about: String,
     state: String,
@@ -36,6 +40,9 @@ pub struct Fit {
     next: String,
     /// What failed.
     failures: Vec<String>,
+    /// Contradictions within the measurements.
+    #[serde(default)]
+    notices: Vec<String>,
     /// All curves at a glance, in cells.
     summary: Vec<[String; 6]>,
     residuals: Vec<Residual>,
@@ -83,7 +90,8 @@ impl Fit {
         Self {
             model: report.model.to_string(),
             variant: report.variant.to_string(),
-            sound: overall.sound,
+            sound: overall.verdict.grade == Grade::Green,
+            verdict: text::verdict_of_fit(report),
             about: format!(
                 "{} of {} g/m², fitted as {}, {}, to {} frames of {} tests.",
                 set.fabric.name,
@@ -101,6 +109,7 @@ impl Fit {
             sure: overall.sure,
             next: overall.next,
             failures: report.failures.iter().map(|failure| failure.in_words()).collect(),
+            notices: report.notices.iter().map(|notice| notice.to_string()).collect(),
             summary: text::summary_rows(report),
             residuals: residuals.chain(more).collect(),
             curves: curves(report),

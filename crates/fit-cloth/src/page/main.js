@@ -57,9 +57,10 @@ function showFit(chosen) {
   };
   const line = (label) => ({ ...(labelled(label) === fit && { disabled: "" }), style: `--colour: ${colourOf(labelled(label))}; --line: ${LINES[VARIANTS.indexOf(labelled(label).variant) % 4]}` });
   choice("beside", page.fits.map(labelOf), (label) => shown().includes(labelled(label)), toggle, line);
-  byId("state").className = fit.sound ? "good" : "bad";
-  for (const words of ["state", "good", "sure", "next", "about"]) byId(words).textContent = fit[words];
+  byId("verdict").className = fit.sound ? "good" : "bad";
+  for (const words of ["verdict", "state", "good", "sure", "next", "about"]) byId(words).textContent = fit[words];
   list("failures", fit.failures);
+  list("notices", fit.notices);
   table("summary", ["curve", "points", "at the end of the range", "± 95 %", "range seen", "observed by"], fit.summary, [0, 5]);
   showRanking();
   table("residuals",

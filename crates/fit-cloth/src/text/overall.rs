@@ -3,13 +3,14 @@
 use super::{half_band, list};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::{SequenceReport, StageReport};
+use cloth_fit::verdict::{self, Verdict, widest_band};
 use cloth_sim::material::Component;
 
 /// What a reader who knows no details should know of a fit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Overall {
-    /// Every curve is known, and every stage came to its minimum.
-    pub sound: bool,
+    /// How far to trust it, by its worst curve.
+    pub verdict: Verdict,
     /// How many curves were fitted, given, not observed.
     pub state: String,
     /// Residuals where they are largest.
@@ -26,7 +27,7 @@ pub fn overall(report: &FitReport) -> Overall {
     let missing: Vec<Component> =
         Component::ALL.into_iter().filter(|&component| !report.knowledge.knows(component)).collect();
     Overall {
-        sound: report.converged() && missing.is_empty(),
+        verdict: verdict::of_fit(report),
         state: state(report, &observed, &missing),
         good: good(report),
         sure: sure(&observed),
@@ -107,15 +108,4 @@ fn next(report: &FitReport, observed: &[&StageReport], missing: &[Component]) ->
         said if said.is_empty() => "What would tell most is not known.".into(),
         said => format!("What would tell most: {said}."),
     }
-}
-
-/// Where a band is widest, and half its width over the curve's largest stress.
-pub(super) fn widest_band(stage: &StageReport) -> Option<(f64, f64)> {
-    let samples = &stage.curve.samples;
-    let largest = samples.iter().fold(f64::MIN_POSITIVE, |most, sample| most.max(sample.stress.abs()));
-    let widths = samples.iter().filter_map(|sample| {
-        let [low, high] = sample.band?;
-        Some((sample.strain, 0.5 * (high - low) / largest))
-    });
-    widths.max_by(|a, b| a.1.total_cmp(&b.1))
 }

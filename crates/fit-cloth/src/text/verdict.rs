@@ -1,28 +1,49 @@
 //! A stage in one sentence.
 
-use super::overall::widest_band;
 use super::{list, unit};
+use cloth_fit::incremental::FitReport;
+use cloth_fit::inspection::Notice;
 use cloth_fit::report::{SequenceReport, StageReport};
+use cloth_fit::verdict::{Verdict, of_fit, of_stage, widest_band};
 use std::fmt::Write;
 
-/// Why it stopped, how good it is, what limits it, what to measure next.
-pub fn verdict(stage: &StageReport) -> String {
+/// How far to trust it and why, what limits it, what to measure next; as a footnote, why the fit stopped.
+///
+/// * `notices` — what was noticed of the measurements
+pub fn verdict(stage: &StageReport, notices: &[Notice]) -> String {
+    let Verdict { grade, reasons } = of_stage(stage, notices);
+    let mut said = vec![limit(stage)];
+    said.extend(next(stage, &reasons));
     // Levels that did not pay come after the one that was kept.
     let kept = stage.levels.iter().find(|level| level.points == stage.curve.curve.len());
     let end = kept.map_or("", |level| &level.status[..]);
-    let state = match (stage.converged, stage.curve.observed) {
-        (true, true) => "converged",
-        (true, false) => "converged, but NOT observed",
-        (false, _) => "NOT converged",
-    };
+    let converged = if stage.converged { "converged" } else { "NOT converged" };
+    let trust = if reasons.is_empty() { trusted(stage) } else { reasons.join("; ") };
     format!(
-        "{}: {state}: {}, and {end}; {}; {}.{}",
+        "{}: {grade}: {trust}; {}.{} ({converged}: {}, and {end})",
         stage.name(),
-        stage.growth,
-        limit(stage),
-        next(stage),
-        oddities(stage)
+        said.join("; "),
+        oddities(stage),
+        stage.growth
     )
+}
+
+/// How sure a curve is that nothing is to be said against.
+fn trusted(stage: &StageReport) -> String {
+    let sure = widest_band(stage).map_or(String::new(), |(_, share)| format!(" to ± {:.1} %", 100.0 * share));
+    format!(
+        "known{sure} of its largest {}",
+        if stage.components[0].is_bending() { "moment" } else { "stress" }
+    )
+}
+
+/// A whole fit in a line: the worst grade, and the curves that have it.
+pub fn verdict_of_fit(report: &FitReport) -> String {
+    let Verdict { grade, reasons } = of_fit(report);
+    match reasons.is_empty() {
+        true => format!("Verdict: {grade}"),
+        false => format!("Verdict: {grade}: {}", reasons.join(" | ")),
+    }
 }
 
 /// What is left beyond the noise.
@@ -42,22 +63,28 @@ fn limit(stage: &StageReport) -> String {
     }
 }
 
-/// What to measure next.
-fn next(stage: &StageReport) -> String {
+/// What to measure next; nothing where a reason for the grade says so already.
+fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
+    if let Some((name, frame)) = stage.sequences.iter().find_map(|s| Some((&s.name, s.outliers.first()?))) {
+        return Some(format!(
+            "frame {frame} of {name} is far off the rest: look at it before anything else, or fit with --robust"
+        ));
+    }
     if !stage.curve.observed {
-        return "it takes another test to see this curve".into();
+        return Some("it takes another test to see this curve".into());
     }
     let Some((place, share)) = widest_band(stage) else {
-        return "too few frames to judge all of the curve by: measure more".into();
+        return Some("too few frames to judge all of the curve by: measure more".into());
     };
     let [at, of] = match stage.components[0].is_bending() {
         true => [format!("curvature {place:.2} 1/m"), "moment".into()],
         false => [format!("strain {place:.4}"), "stress".into()],
     };
-    format!(
+    let said = format!(
         "the 95 % band is widest at {at}, ± {:.1} % of the largest {of}: more frames there would narrow it most",
         100.0 * share
-    )
+    );
+    reasons.is_empty().then_some(said)
 }
 
 /// Frames that take no part, and frames to look at.

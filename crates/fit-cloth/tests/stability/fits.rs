@@ -317,7 +317,7 @@ fn on_a_bound(
         let holds = match constraints {
             Constraints::Stable => report.converged() && from_zero && active > 0,
             Constraints::ControlPoints => {
-                let said = report.converged() || text::verdict(&stage).contains("NOT converged");
+                let said = report.converged() || text::verdict(&stage, &[]).contains("NOT converged");
                 said && lowest >= 0.0
             }
         };

@@ -252,7 +252,7 @@ fn straight(
         let missed = |strain: &f64| lever(*strain) * (curved(*strain) - stage.curve.curve.stress(*strain));
         let rms =
             (strains.iter().map(|strain| missed(strain).powi(2)).sum::<f64>() / strains.len() as f64).sqrt();
-        (stage.scatter.misfit / rms, text::verdict(&stage).contains("beyond"), stage.scatter.known)
+        (stage.scatter.misfit / rms, text::verdict(&stage, &[]).contains("beyond"), stage.scatter.known)
     });
     // Some measurements are across the pull, and say nothing.
     let holds = matches!(found, Ok((share, true, known)) if (0.5..1.5).contains(&share) && known == given);
@@ -278,7 +278,7 @@ fn hysteresis(row: &mut Row, kind: Kind, model: Model, (stiffness, side): (f64, 
         (
             stage.scatter.misfit > 10.0 * stage.scatter.noise,
             ratio,
-            text::verdict(&stage).contains("hysteresis"),
+            text::verdict(&stage, &[]).contains("hysteresis"),
         )
     });
     let holds = matches!(found, Ok((true, Some(ratio), true)) if (ratio / 1.5 - 1.0).abs() < 0.02);

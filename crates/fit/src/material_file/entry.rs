@@ -2,10 +2,12 @@
 
 use super::control_point::{ControlPoint, Unit};
 use crate::frame::Kind;
+use crate::inspection::Notice;
 use crate::interventions::Interventions;
 use crate::report::{Basis, CurveReport, SequenceReport, StageReport};
 use crate::simulation::DroppedFrame;
 use crate::simulation::Objective;
+use crate::verdict::{self, Verdict};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::error::Error;
 use cloth_sim::material::{Component, Model};
@@ -23,6 +25,9 @@ pub struct CurveEntry {
     /// The components that share the curve, if there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shared_by: Vec<Component>,
+    /// How far to trust it, and why not farther.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
     /// The control points of k(ε), a Hermite spline: docs/model.md.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub control_points: Vec<ControlPoint>,
@@ -85,7 +90,7 @@ pub struct Correlation {
 
 impl CurveEntry {
     /// What a stage found; nothing but `observed: false` without one.
-    pub(super) fn new(stage: Option<&StageReport>) -> Self {
+    pub(super) fn new(stage: Option<&StageReport>, notices: &[Notice]) -> Self {
         let Some(stage) = stage else { return Self::default() };
         let report = &stage.curve;
         let scatter = |objective| Some(stage.scatter).filter(|_| stage.objective == objective);
@@ -94,6 +99,7 @@ impl CurveEntry {
         Self {
             observed: report.observed,
             given: false,
+            verdict: Some(verdict::of_stage(stage, notices)),
             shared_by: if stage.components.len() > 1 { stage.components.clone() } else { Vec::new() },
             control_points: if report.observed { control_points(stage) } else { Vec::new() },
             visited_strain: Some(report.visited),

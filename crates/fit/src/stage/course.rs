@@ -81,7 +81,7 @@ pub fn fit(
     let clock = Instant::now();
     let spent_before = watch.meter.read();
     let replicas = plan.replicas(set, settings)?;
-    if replicas.is_empty() || plan.pass > 1 && !gains_from_bending(plan, &replicas, knowledge) {
+    if replicas.is_empty() || plan.pass > 1 && !gains_from_bending(plan, &replicas) {
         return Ok(None);
     }
     let Start { stiffness, largest, known, assumed } = start(plan, &replicas, knowledge, settings)?;
@@ -91,7 +91,7 @@ pub fn fit(
     let first = before.clone().unwrap_or(constant);
     let mut simulation = simulate(plan, &replicas, known, first, settings, watch)?;
     let dropped = simulation.dropped().len();
-    let growth = match before {
+    let growth = match &before {
         Some(_) => refit(&mut simulation, settings, 1e-3 * largest, watch),
         None => grow(&mut simulation, settings, 1e-3 * largest, watch),
     };
@@ -106,7 +106,10 @@ pub fn fit(
     let forces = simulation.settle();
     let complete = simulation.dropped().len() == dropped;
     let others = knowledge.without(&plan.fitted);
-    let judgement = judge(plan, &simulation, &growth, &tracks, &others, complete);
+    let mut judgement = judge(plan, &simulation, &growth, &tracks, &others, complete);
+    if let Some(apart) = before.and_then(|first| ignorance(plan, &assumed, &first, &growth.curve)) {
+        judgement.covariance.widen(&apart);
+    }
     let Judgement { scatter, covariance, gain, observed } = &judgement;
     // Where frames were lost on the way nothing is carried on.
     let uncertain: &[Component] = if complete { &plan.components } else { &[] };
@@ -146,11 +149,23 @@ pub fn fit(
 }
 
 /// True if a second pass differs from the first: shear then has the bending that was left out before, which a sheet feels
-/// only where it was seen to leave its plane.
-fn gains_from_bending(plan: &Plan, replicas: &[Replica], knowledge: &Knowledge) -> bool {
-    let buckled = |replica: &Replica| replica.frames.iter().any(|frame| replica.is_buckled(frame));
-    let bends = [Component::BendWeft, Component::BendWarp].iter().all(|&c| knowledge.knows(c));
-    plan.fitted[0] != Component::Shear || bends && replicas.iter().any(buckled)
+/// only where it may leave its plane.
+fn gains_from_bending(plan: &Plan, replicas: &[Replica]) -> bool {
+    plan.fitted[0] != Component::Shear || replicas.iter().any(Replica::may_buckle)
+}
+
+/// What a curve may be off by since bending was assumed: as much as from the first pass, in which the sheet does not bend
+/// at all. No fabric is stiffer than that, and few are much softer than what is assumed.
+fn ignorance(
+    plan: &Plan,
+    assumed: &[Component],
+    first: &StiffnessCurve,
+    curve: &StiffnessCurve,
+) -> Option<DVector<f64>> {
+    let unknown = !plan.flat && plan.fitted[0] == Component::Shear && assumed.iter().any(|c| c.is_bending());
+    let apart =
+        curve.strains().iter().zip(curve.stiffnesses()).map(|(&strain, k)| first.stiffness(strain) - k);
+    unknown.then(|| DVector::from_iterator(curve.len(), apart))
 }
 
 /// All frames in equilibrium under the first curve.

@@ -97,7 +97,7 @@ fn assumption(
     known: &Curves,
 ) -> f64 {
     if component.is_bending() && !plan.fitted[0].is_bending() {
-        return softest_bending(known).unwrap_or(0.0);
+        return softest_bending(known).unwrap_or_else(|| usual_bending(replicas, component));
     }
     // Across a strip, and for the other bending: as the fitted one. It hardly matters.
     if component.is_bending() || plan.fitted[0].is_stretch() {
@@ -120,6 +120,24 @@ pub(crate) fn softest_bending(known: &Curves) -> Option<f64> {
         bends.filter_map(|component| known.get(component)).flat_map(StiffnessCurve::stiffnesses);
     stiffnesses.copied().reduce(f64::min)
 }
+
+/// Bending length of the median fabric, m: ∛(rigidity / weight per area). Of 168 measured fabrics in three directions 95 of
+/// 100 lie between 10 and 32 mm. Source: Feng et al. 2022.
+const USUAL_BENDING_LENGTH: f64 = 0.019;
+
+/// The stiffness of one bending component that gives a sheet of its weight the usual bending length.
+fn usual_bending(replicas: &[Replica], component: Component) -> f64 {
+    let curvature = 1.0 / USUAL_BENDING_LENGTH;
+    let of_replica = |replica: &Replica| {
+        let rolled = replica.cloths.iter().find_map(|cloth| cloth.bending()?.rolled(component))?;
+        let rigidity = replica.areal_density * STANDARD_GRAVITY * USUAL_BENDING_LENGTH.powi(3);
+        Some(rigidity * curvature / (rolled.lever(curvature) * rolled.strain(curvature)))
+    };
+    replicas.iter().find_map(of_replica).unwrap_or(0.0)
+}
+
+/// m/s²; a bending length is stated for it, whatever the test's own is.
+const STANDARD_GRAVITY: f64 = 9.81;
 
 /// The mean stiffness that balances the clip forces on the blended shapes, if the fitted curve bore all the load.
 fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result<f64> {
