@@ -86,7 +86,8 @@ fn shear_in_a_picture_frame(size: Size) {
     let truths: Curves = [(Component::Shear, truth.clone())].into_iter().collect();
     let held = size.mean(|seed| {
         let law = |strain: f64| truth.stress(strain);
-        let set = PictureFrame { noise: Some(seed), ..PictureFrame::of_law(&law, &angles) }.measure();
+        let set =
+            PictureFrame { noise: Some(seed), shapes: true, ..PictureFrame::of_law(&law, &angles) }.measure();
         let known = Knowledge::default();
         let report = fit(&set, &[Stage::Shear], &known, &settings, &mut Watch::default()).unwrap();
         share(report.stage(Component::Shear).unwrap(), &truths)

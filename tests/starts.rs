@@ -67,7 +67,7 @@ fn stretch_ends_in_one_optimum() {
 fn shear_ends_in_one_optimum() {
     let angles: Vec<f64> = (1..=15).map(|i| 0.5f64.asin() * f64::from(i) / 15.0).collect();
     let law = |e: f64| 60.0 * e + 400.0 * e * e * e;
-    let set = PictureFrame { noise: Some(2), ..PictureFrame::of_law(&law, &angles) }.measure();
+    let set = PictureFrame { noise: Some(2), shapes: true, ..PictureFrame::of_law(&law, &angles) }.measure();
     one_optimum(&set, &shear::plan(1));
 }
 

@@ -155,7 +155,8 @@ fn gains_from_bending(plan: &Plan, replicas: &[Replica]) -> bool {
 }
 
 /// What a curve may be off by since bending was assumed: as much as from the first pass, in which the sheet does not bend
-/// at all. No fabric is stiffer than that, and few are much softer than what is assumed.
+/// at all. No fabric is stiffer than that, and few are much softer than what is assumed. A quarter more, since a sheet that
+/// stayed flat is the end of that range, and must be well inside it.
 fn ignorance(
     plan: &Plan,
     assumed: &[Component],
@@ -163,8 +164,11 @@ fn ignorance(
     curve: &StiffnessCurve,
 ) -> Option<DVector<f64>> {
     let unknown = !plan.flat && plan.fitted[0] == Component::Shear && assumed.iter().any(|c| c.is_bending());
-    let apart =
-        curve.strains().iter().zip(curve.stiffnesses()).map(|(&strain, k)| first.stiffness(strain) - k);
+    let apart = curve
+        .strains()
+        .iter()
+        .zip(curve.stiffnesses())
+        .map(|(&strain, k)| 1.25 * (first.stiffness(strain) - k));
     unknown.then(|| DVector::from_iterator(curve.len(), apart))
 }
 
