@@ -11,12 +11,15 @@
 //! then holds this truth too, in 90 % of the range at least, and the verdict names bending.
 
 use cloth_fit::incremental::{FitReport, Stage, fit};
+use cloth_fit::io::read_set;
 use cloth_fit::knowledge::Knowledge;
+use cloth_fit::rig::KnownFabric;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_fit::verdict::{Grade, of_stage};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::picture_frame::PictureFrame;
 use fit_cloth_tests::{coverage, stress_error};
+use std::path::Path;
 
 fn law(strain: f64) -> f64 {
     60.0 * strain + 400.0 * strain * strain * strain
@@ -57,4 +60,40 @@ fn a_sheet_that_nobody_saw_may_have_buckled_or_not() {
     println!("not seen: the band holds the truth in {:.0} % of the range; {verdict:?}", 100.0 * held);
     assert!(!stage.sequences[0].planar && held >= 0.9);
     assert!(verdict.grade > Grade::Green && verdict.reasons.iter().any(|reason| reason.contains("bending")));
+}
+
+/// Without tests of bending, with the shapes of the sheared sheet and without.
+#[test]
+fn shear_alone_holds_the_truth_of_a_sheet_that_buckles_or_says_what_it_lacks() {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");
+    for name in ["cotton-denim", "cotton-satin", "rayon-spandex-knit", "wool-cotton"] {
+        let path = fixtures.join("fabrics").join(name).with_extension("toml");
+        let fabric = KnownFabric::parse(&path, &std::fs::read_to_string(&path).unwrap()).unwrap();
+        let truth = fabric.curves().unwrap().get(Component::Shear).unwrap().clone();
+        let mut set = read_set(&fixtures.join(name)).unwrap();
+        for shapes in [true, false] {
+            if !shapes {
+                let frames = set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames);
+                frames.for_each(|frame| frame.positions = None);
+            }
+            let stages = [Stage::Stretch, Stage::Shear];
+            let report =
+                fit(&set, &stages, &Knowledge::default(), &Settings::default(), &mut Watch::default())
+                    .unwrap();
+            let stage = report.stage(Component::Shear).unwrap();
+            let held = coverage(&stage.curve.samples, &|strain| truth.stress(strain));
+            let error = stress_error(&stage.curve.samples, &|strain| truth.stress(strain));
+            let verdict = of_stage(stage, &report.notices);
+            println!(
+                "{name}, shapes {shapes}: off by {:.1} %, the band holds the truth in {:.0} %, {}",
+                100.0 * error,
+                100.0 * held,
+                verdict.grade
+            );
+            assert!(held >= 0.9, "{name}, shapes {shapes}: {held}");
+            assert!(
+                verdict.grade > Grade::Green && verdict.reasons.iter().any(|why| why.contains("bending"))
+            );
+        }
+    }
 }
