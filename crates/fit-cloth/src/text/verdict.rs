@@ -1,6 +1,6 @@
 //! A stage in one sentence.
 
-use super::{list, unit};
+use super::{list, seen, unit};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::inspection::Notice;
 use cloth_fit::report::{SequenceReport, StageReport};
@@ -31,10 +31,8 @@ pub fn verdict(stage: &StageReport, notices: &[Notice]) -> String {
 /// How sure a curve is that nothing is to be said against.
 fn trusted(stage: &StageReport) -> String {
     let sure = widest_band(stage).map_or(String::new(), |(_, share)| format!(" to ± {:.1} %", 100.0 * share));
-    format!(
-        "known{sure} of its largest {}",
-        if stage.components[0].is_bending() { "moment" } else { "stress" }
-    )
+    let [stress, unit] = if stage.components[0].is_bending() { ["moment", " 1/m"] } else { ["stress", ""] };
+    format!("known{sure} of its largest {stress} from {}{unit}", seen(stage))
 }
 
 /// A whole fit in a line: the worst grade, and the curves that have it.
