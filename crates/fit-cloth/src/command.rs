@@ -14,11 +14,15 @@ pub mod validate;
 
 use crate::failure::Failure;
 use crate::options::{Command, Options, Telling};
+use cloth_fit::io::table::lines_above_header;
 use cloth_fit::store::Recalled;
+use cloth_sim::curve::soundness::Finding;
+use cloth_sim::material::Component;
 use goal::Goal;
 use serde::Serialize;
 use serde_json::Value;
 use std::io::Write;
+use std::path::Path;
 
 /// How a command that could be carried out has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,6 +84,27 @@ fn recalled<T>(recalled: Recalled<T>, telling: Telling, name: impl Fn(&T) -> Str
 /// Says on standard error what the user should know, though the command goes on.
 fn warn(telling: Telling, warning: &str) {
     note(telling, &format!("warning: {warning}"));
+}
+
+/// Warns of what `check` finds wrong with curves that are made or used.
+fn warn_of_defects(telling: Telling, what: &str, findings: &[(Component, Vec<Finding>)]) {
+    for (component, findings) in findings {
+        for finding in findings.iter().filter(|finding| finding.is_defect()) {
+            warn(telling, &format!("{what}, {component}: {finding}: {}", finding.consequence()));
+        }
+    }
+}
+
+/// Says on standard error that lines above a table's header were passed over.
+fn note_lines_above(telling: Telling, path: &Path, columns: &[&str]) -> Result<(), Failure> {
+    match lines_above_header(path, columns)? {
+        0 => {}
+        1 => note(telling, &format!("{}: a line above the header is passed over", path.display())),
+        lines => {
+            note(telling, &format!("{}: {lines} lines above the header are passed over", path.display()))
+        }
+    }
+    Ok(())
 }
 
 /// Says something on standard error.

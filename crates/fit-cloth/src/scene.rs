@@ -30,6 +30,8 @@ use std::path::Path;
 pub struct Scene {
     /// Its name.
     pub name: String,
+    /// Where the origin of all coordinates here lies in the scene's own, m: at a sheet that is far from that, else zero.
+    pub origin: Vector3<f64>,
     /// The sheet at rest, where it lies before anything acts on it.
     pub mesh: Mesh,
     /// m/s².
@@ -66,7 +68,9 @@ impl Scene {
         if scene.name.trim().is_empty() {
             return Err(file.invalid("name", "nothing", "the scene's name"));
         }
-        let mesh = sheet::mesh(&scene.sheet, path, &file)?;
+        let mut mesh = sheet::mesh(&scene.sheet, path, &file)?;
+        let origin = sheet::origin(&mesh);
+        mesh.positions.iter_mut().for_each(|position| *position -= origin);
         let hold::Holds { held, guided, support } = hold::holds(&scene.held, &mesh, &file)?;
         let gravity = vector(&file, "gravity_m_s2", scene.gravity_m_s2)?;
         let positive = |key: &str, value: f64| match value > 0.0 && value.is_finite() {
@@ -87,6 +91,7 @@ impl Scene {
         }
         Ok(Self {
             name: scene.name,
+            origin,
             mesh,
             gravity,
             components: scene.components,

@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 pub struct Frame {
     /// s since the start; `None` for the shape at rest, which takes no time.
     pub time: Option<f64>,
-    /// m.
+    /// From the scene's [`origin`](Scene::origin), m.
     pub positions: Vec<Vector3<f64>>,
 }
 

@@ -20,9 +20,9 @@ pub struct Reading {
     /// stretch and shear read differently
     #[arg(long, value_enum)]
     pub component: Option<ComponentChoice>,
-    /// The model whose strains a table is over
-    #[arg(long, value_enum, default_value_t = TableModel::Stvk)]
-    pub model: TableModel,
+    /// The model whose strains a table is over [default: as its columns say, else stvk]
+    #[arg(long, value_enum)]
+    pub model: Option<TableModel>,
 }
 
 /// One of the six components.
@@ -111,19 +111,18 @@ pub fn read(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>)> {
     let file = CurveFile::read(path)?;
     let component = match (reading.component, file.kind) {
         (Some(component), _) => component.into(),
-        (None, Kind::Bending) => Component::BendWeft,
         (None, Kind::Membrane) if file.is_two_sided() => {
             let expected = "--component, since stretch and shear read rows below zero differently";
             return Err(Error::input(path, None, file.kind.columns()[0], "rows below zero", expected));
         }
-        (None, Kind::Membrane) => Component::StretchWeft,
+        (None, kind) => kind.typical().0,
     };
-    let model = reading.model.into();
+    let model = reading.model.map_or(file.kind.typical().1, Model::from);
     let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (axis, unit) = match file.kind {
-        Kind::Membrane => ("strain", "N/m"),
         Kind::Bending => ("curvature [1/m]", "N"),
+        kind => (kind.names()[0], "N/m"),
     };
     let context = context(model, component, None);
     let subject =

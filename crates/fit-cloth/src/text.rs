@@ -22,10 +22,11 @@ pub use summary::{as_published, missing, summary, summary_rows};
 pub use validation::validation;
 pub use verdict::{verdict, verdict_of_fit};
 
+use cloth_fit::curve_file::Kind;
 use cloth_fit::interventions::Interventions;
 use cloth_fit::report::{Sample, StageReport};
 use cloth_fit::simulation::Objective;
-use cloth_sim::material::Component;
+use cloth_sim::material::{Component, Model};
 use std::fmt::Display;
 
 /// Items with commas between them.
@@ -42,10 +43,11 @@ fn unit(stage: &StageReport) -> (&'static str, f64) {
 }
 
 /// What a curve is over, and what it gives.
-pub(crate) fn curve_labels(component: Component) -> [&'static str; 2] {
+pub(crate) fn curve_labels(model: Model, component: Component) -> [String; 2] {
+    let [strain, stress] = Kind::of(component, model).names();
     match component.is_bending() {
-        true => ["curvature [1/m]", "moment per width [N]"],
-        false => ["strain [–]", "stress [N/m]"],
+        true => [format!("{strain} [1/m]"), format!("{stress} [N]")],
+        false => [format!("{strain} [–]"), format!("{stress} [N/m]")],
     }
 }
 

@@ -241,3 +241,22 @@ fn an_edit_in_a_material_is_told_in_it_and_a_bad_one_is_warned_of() {
     let (code, _, error) = run(at, &wrong);
     assert!(code == Some(3) && error.contains("a factor above 0") && !at.join("out.csv").exists(), "{error}");
 }
+
+#[test]
+fn a_tables_columns_say_how_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let rows = "\n-0.1,-10\n0,0\n0.1,10\n";
+    fs::write(at.join("soft.csv"), format!("engineering_strain,nominal_stress_n_per_m{rows}")).unwrap();
+    fs::write(at.join("shear.csv"), format!("shear_strain,shear_stress_n_per_m{rows}")).unwrap();
+    for file in ["soft.csv", "shear.csv"] {
+        let (code, text, error) = run(at, &["check", file]);
+        assert_eq!(code, Some(0), "{text} {error}");
+    }
+    let (code, _, error) = run(at, &["check", "soft.csv", "--model", "stvk"]);
+    assert!(code == Some(3) && error.contains("expected green_strain and pk2_stress_n_per_m"), "{error}");
+    let (code, _, error) = run(at, &["curve", "scale", "soft.csv", "--stress", "2", "--out", "twice.csv"]);
+    assert_eq!(code, Some(0), "{error}");
+    let twice = fs::read_to_string(at.join("twice.csv")).unwrap();
+    assert!(twice.starts_with("engineering_strain,") && twice.contains("nominal_stress_n_per_m"), "{twice}");
+}

@@ -155,7 +155,7 @@ fn bad_input_ends_in_3_and_writes_nothing() {
         "",
         "",
         &["--thickness-m", "2"],
-        "knit/fabric.toml:5 thickness_m: found 2, expected a thickness above 0 and at most 0.1 m (millimetres?)",
+        "knit/fabric.toml:5 thickness_m: found 2, expected a length above 0 and at most 0.1 m (millimetres?)",
     );
 }
 
@@ -165,8 +165,23 @@ fn a_negative_gauge_is_bad_input_and_not_an_unknown_option() {
     let options = OPTIONS.map(|option| if option == "0.08" { "-0.08" } else { option });
     let output =
         command(folder.path(), &[&["import", "strip", "weft.csv"], &options[..]].concat()).output().unwrap();
-    let expected = "error: gauge: found -0.08, expected a length above 0 and at most 10 m (millimetres?)\n";
+    let expected = "error: gauge: found -0.08, expected a length above 0 and at most 10 m\n";
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(3), expected));
+}
+
+#[test]
+fn lines_above_the_header_are_passed_over_and_said() {
+    let folder = folder();
+    let path = folder.path().join("weft.csv");
+    fs::write(&path, format!("***\n*** made by a program\n{TABLE}")).unwrap();
+    let output = import(folder.path(), &[]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(text(&output.stderr), "weft.csv: 2 lines above the header are passed over\n");
+    assert!(text(&output.stdout).starts_with("stretch-weft: 4 rows, strain 0.0000 to 0.2000"));
+    fs::write(&path, b"PK\x03\x04\x14\0\x06\0").unwrap();
+    let output = import(folder.path(), &["--replace"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text(&output.stderr).contains("found a workbook") && text(&output.stderr).contains("as CSV"));
 }
 
 #[test]

@@ -132,7 +132,13 @@ fn curves_have_band_points_and_the_strains_beneath() {
                     format!("{curve}-moment"),
                     ["curvature [1/m]", "moment per width [mN]", "curvatures of all frames"],
                 ),
-                false => (format!("{curve}-stress"), ["strain [–]", "stress [N/m]", "strains of all frames"]),
+                false => {
+                    let [x, y] = match curve {
+                        "shear" => ["shear strain [–]", "shear stress [N/m]"],
+                        _ => ["Green strain [–]", "second Piola–Kirchhoff stress [N/m]"],
+                    };
+                    (format!("{curve}-stress"), [x, y, "strains of all frames"])
+                }
             };
             let figure = fitted.plot(&figure);
             let common = ["share of the sheet [%]", "95 % band", "fit", "control points"];

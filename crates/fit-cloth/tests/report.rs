@@ -95,13 +95,25 @@ fn the_page_holds_the_numbers_of_the_result() {
         assert!(quantiles.iter().all(|other| (other / first - 1.0).abs() < 1e-12), "{name}: {quantiles:?}");
 
         let rows = table(&out.join(format!("curves/{name}.csv")));
-        let columns: [&str; 4] = match name.starts_with("bend") {
-            true => ["curvature_per_m", "moment_n", "moment_low_n", "moment_high_n"],
-            false => ["strain", "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
+        let (strain, stress, unit, label) = match name {
+            "shear" => ("shear_strain", "shear_stress", "n_per_m", "shear strain [–]"),
+            name if name.starts_with("bend") => ("curvature_per_m", "moment", "n", "curvature [1/m]"),
+            _ => ("green_strain", "pk2_stress", "n_per_m", "Green strain [–]"),
         };
+        let columns: [String; 4] = [
+            strain.into(),
+            format!("{stress}_{unit}"),
+            format!("{stress}_low_{unit}"),
+            format!("{stress}_high_{unit}"),
+        ];
+        assert_eq!(curve["x_label"], label);
         assert_eq!(rows.len(), array(&curve["samples"]).len());
         for (row, sample) in rows.iter().zip(array(&curve["samples"])) {
-            assert_eq!(&columns.map(|column| row[column].clone())[..], &array(sample)[..], "{name}");
+            assert_eq!(
+                &columns.clone().map(|column| row[column.as_str()].clone())[..],
+                &array(sample)[..],
+                "{name}"
+            );
         }
         let shares: f64 =
             array(&curve["histogram"]["shares"]).iter().map(|share| share.as_f64().unwrap()).sum();

@@ -232,3 +232,38 @@ fn springs_need_a_grid_and_other_folders_are_left_alone() {
     assert_eq!(simulate(folder.path(), &["--duration", "-1"]).status.code(), Some(2));
     assert_eq!(simulate(folder.path(), &["--rest", "--duration", "1"]).status.code(), Some(2));
 }
+
+#[test]
+fn a_stiffness_in_pascals_is_warned_of() {
+    let folder = folder(SCENE, &CLOTH.replacen("100.0", "2.0e6", 1));
+    let [_, errors] = said(&simulate(folder.path(), &["--rest"]));
+    let named = "warning: cloth.toml, stretch-weft: magnitude (2.000e6, limit 1.000e6)";
+    assert!(errors.contains(named) && errors.contains("pascals?"), "{errors}");
+    fs::write(folder.path().join("cloth.toml"), CLOTH).unwrap();
+    assert!(!said(&simulate(folder.path(), &["--rest"]))[1].contains("warning"));
+}
+
+#[test]
+fn a_sheet_far_away_hangs_as_one_nearby_does() {
+    let vertex =
+        |line: &str| -> Vec<f64> { line.split(' ').skip(1).map(|number| number.parse().unwrap()).collect() };
+    let rest = |scene: &str| {
+        let folder = folder(scene, CLOTH);
+        let output = simulate(folder.path(), &["--rest", "--json"]);
+        assert!(output.status.success(), "{:?}", said(&output));
+        let shape = fs::read_to_string(folder.path().join("out/frames/0001.obj")).unwrap();
+        let vertices: Vec<_> = shape.lines().filter(|line| line.starts_with("v ")).map(vertex).collect();
+        (json(&output), vertices)
+    };
+    let ((near, here), (far, there)) =
+        (rest(SCENE), rest(&SCENE.replace("warp = ", "origin_m = [5e6, -3e6, 400.0]\nwarp = ")));
+    let sink = |json: &Value| json["droop"]["bottom_edge_sinks_m"].as_f64().unwrap();
+    // Where the sheet lies is rounded to 1e-9 m there.
+    assert!((sink(&near) - sink(&far)).abs() < 1e-8, "{near} {far}");
+    let [imbalance, allowed] = ["imbalance_n", "tolerance_n"].map(|key| far["rest"][key].as_f64().unwrap());
+    assert!(imbalance < 1e-6 && allowed < 1e-4, "{far}");
+    for (here, there) in here.iter().zip(&there) {
+        let moved = here.iter().zip([5e6, -3e6, 400.0]).map(|(place, by)| place + by);
+        assert!(moved.zip(there).all(|(moved, there)| (moved - there).abs() < 1e-8), "{here:?} {there:?}");
+    }
+}

@@ -85,13 +85,22 @@ fn the_fixture_ends_with_two_curves_and_a_residual_table() {
     let mut lines = curve.lines();
     assert_eq!(
         lines.next().unwrap(),
-        "strain,stiffness_n_per_m,stress_n_per_m,stress_low_n_per_m,stress_high_n_per_m"
+        "green_strain,stiffness_n_per_m,pk2_stress_n_per_m,pk2_stress_low_n_per_m,pk2_stress_high_n_per_m,\
+         engineering_strain,nominal_stress_n_per_m"
     );
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
     assert_eq!(rows.len(), 201);
     assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
     assert!(rows.iter().flatten().all(|value| value.is_finite()));
+    // λ = √(1 + 2E), F/w = λ S.
+    for row in &rows {
+        let stretch = (1.0 + 2.0 * row[0]).sqrt();
+        assert!(
+            (row[5] - (stretch - 1.0)).abs() < 1e-12 && (row[6] / row[2].max(1e-300) - stretch).abs() < 1e-9
+                || row[2] == 0.0
+        );
+    }
     let material = fs::read_to_string(out.join("material.json")).unwrap();
     assert!(material.contains("fit-cloth/material/1") && !material.contains("null"));
 }

@@ -24,12 +24,23 @@ pub fn context(model: Model, component: Component, visited: Option<[f64; 2]>) ->
 /// # Errors
 /// Control points that make no curve.
 pub fn check_material(file: &MaterialFile) -> Result<Vec<(Component, Vec<Finding>)>> {
-    let curves = file.curves()?;
+    let visited = |component| file.curves[&component].visited_strain;
+    Ok(check_curves(file.model, &file.curves()?, visited))
+}
+
+/// The findings of every curve, those without any too.
+///
+/// * `visited` — the strains that a measurement of a component visited, if there was one
+pub fn check_curves(
+    model: Model,
+    curves: &Curves,
+    visited: impl Fn(Component) -> Option<[f64; 2]>,
+) -> Vec<(Component, Vec<Finding>)> {
     let findings = |component| {
-        let context = context(file.model, component, file.curves[&component].visited_strain);
+        let context = context(model, component, visited(component));
         curves.get(component).map(|curve| soundness::check(curve, &context))
     };
-    Ok(curves.components().filter_map(|component| Some((component, findings(component)?))).collect())
+    curves.components().filter_map(|component| Some((component, findings(component)?))).collect()
 }
 
 /// Refuses curves whose shape can go wrong in a simulation, whatever their unit; the first defect is named.

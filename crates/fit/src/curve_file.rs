@@ -1,7 +1,7 @@
 //! A curve as a table: stress against strain, or moment against curvature, to a curve that a simulation takes.
 //!
 //! ```text
-//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ
+//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ            or as a fit names them
 //! bending           curvature_per_m, moment_n        εᵢ = 3 × curvature     kᵢ = Mᵢ/εᵢ      hinges of a regular grid
 //! ```
 //!
@@ -25,39 +25,115 @@ const DISAGREEMENT: f64 = 0.01;
 /// Strains up to this share of the largest are zero: 201 equidistant rows from below zero meet it to rounding only.
 const ZERO: f64 = 1e-9;
 
-/// What a table is of.
+/// What a table is of, as its columns say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Stress (N/m) over strain: stretch or shear.
+    /// Stress (N/m) over strain, of stretch or shear, in the strain of the model that will read it.
     Membrane,
+    /// Second Piola–Kirchhoff stress per width (N/m) over Green strain: stretch of `stvk`.
+    Green,
+    /// Nominal stress per width (N/m) over engineering strain: stretch of the other models.
+    Engineering,
+    /// Shear stress (N/m) over w_u·w_v: shear of triangles.
+    Shear,
+    /// Stress (N/m) over the engineering strain of the cells' diagonals: shear of springs.
+    Diagonal,
     /// Moment per width (N) over curvature (1/m).
     Bending,
 }
 
 impl Kind {
+    /// All of them, those first whose columns say the most.
+    const ALL: [Self; 6] =
+        [Self::Bending, Self::Green, Self::Engineering, Self::Shear, Self::Diagonal, Self::Membrane];
+
     /// Strain or curvature, secant stiffness, stress or moment, and the band's sides, as they head a file.
     pub fn columns(self) -> [&'static str; 5] {
+        const K: &str = "stiffness_n_per_m";
         match self {
-            Self::Membrane => {
-                ["strain", "stiffness_n_per_m", "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"]
+            Self::Membrane => ["strain", K, "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
+            Self::Green => {
+                ["green_strain", K, "pk2_stress_n_per_m", "pk2_stress_low_n_per_m", "pk2_stress_high_n_per_m"]
             }
+            Self::Engineering => [
+                ENGINEERING[0],
+                K,
+                ENGINEERING[1],
+                "nominal_stress_low_n_per_m",
+                "nominal_stress_high_n_per_m",
+            ],
+            Self::Shear => [
+                "shear_strain",
+                K,
+                "shear_stress_n_per_m",
+                "shear_stress_low_n_per_m",
+                "shear_stress_high_n_per_m",
+            ],
+            Self::Diagonal => [
+                "diagonal_strain",
+                K,
+                "diagonal_stress_n_per_m",
+                "diagonal_stress_low_n_per_m",
+                "diagonal_stress_high_n_per_m",
+            ],
             Self::Bending => ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"],
         }
     }
 
-    /// The kind of a component's table.
-    pub fn of(component: Component) -> Self {
-        if component.is_bending() { Self::Bending } else { Self::Membrane }
+    /// Strain and stress, or curvature and moment, in words.
+    pub fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Membrane => ["strain", "stress"],
+            Self::Green => ["Green strain", "second Piola–Kirchhoff stress"],
+            Self::Engineering => ["engineering strain", "nominal stress"],
+            Self::Shear => ["shear strain", "shear stress"],
+            Self::Diagonal => ["diagonal strain", "diagonal stress"],
+            Self::Bending => ["curvature", "moment per width"],
+        }
+    }
+
+    /// The kind of a component's table in a model.
+    pub fn of(component: Component, model: Model) -> Self {
+        match (component.is_bending(), component, model) {
+            (true, ..) => Self::Bending,
+            (false, Component::Shear, Model::Springs) => Self::Diagonal,
+            (false, Component::Shear, _) => Self::Shear,
+            (false, _, Model::Stvk) => Self::Green,
+            (false, ..) => Self::Engineering,
+        }
+    }
+
+    /// A component and a model that have such tables.
+    pub fn typical(self) -> (Component, Model) {
+        match self {
+            Self::Membrane | Self::Green => (Component::StretchWeft, Model::Stvk),
+            Self::Engineering => (Component::StretchWeft, Model::SoftConstraint),
+            Self::Shear => (Component::Shear, Model::Stvk),
+            Self::Diagonal => (Component::Shear, Model::Springs),
+            Self::Bending => (Component::BendWeft, Model::Stvk),
+        }
+    }
+
+    /// Engineering strain and nominal stress of a row of [`Kind::Green`], √(1 + 2E) − 1 and S √(1 + 2E); `None` of other
+    /// kinds, which have no others beside their own, and where no length is left.
+    pub fn engineering(self, strain: f64, stress: f64) -> Option<[f64; 2]> {
+        let square = 1.0 + 2.0 * strain;
+        let stretch = Some(square).filter(|square| self == Self::Green && *square > 0.0)?.sqrt();
+        // Without cancellation: (λ² − 1)/(λ + 1).
+        Some([2.0 * strain / (stretch + 1.0), stress * stretch])
     }
 
     /// Strain of the model's elements over what the first column holds.
     fn strain_per_unit(self) -> f64 {
         match self {
-            Self::Membrane => 1.0,
             Self::Bending => HINGE_STRAIN_PER_CURVATURE,
+            _ => 1.0,
         }
     }
 }
+
+/// Engineering strain and nominal stress, as they head a file.
+pub(crate) const ENGINEERING: [&str; 2] = ["engineering_strain", "nominal_stress_n_per_m"];
 
 /// A table of a curve, as it stands in a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +146,7 @@ pub struct CurveFile {
     pub stresses: Vec<f64>,
     /// Secant stiffnesses in N/m, or flexural rigidities in N·m, where the file has the column.
     pub stiffnesses: Option<Vec<f64>>,
-    /// Lower and upper side of a band on the stress, each where the file has the column.
+    /// Lower and upper side of a band on the stress, each where the file has the column; NaN where a row has none.
     pub band: [Option<Vec<f64>>; 2],
     path: PathBuf,
     lines: Vec<usize>,
@@ -117,7 +193,7 @@ impl CurveFile {
     /// none is at zero, a control point is put there.
     ///
     /// # Errors
-    /// A table of the other kind; bending of springs, whose tables belong to a grid; no row at zero where the table
+    /// A table of another kind, or of another model's strain; bending of springs, whose tables belong to a grid; no row at zero where the table
     /// starts above it; a stress at zero; fewer than two rows from zero on; a stiffness column that is not the stress
     /// over the strain; rows below zero that disagree.
     pub fn curve(
@@ -244,15 +320,18 @@ impl CurveFile {
         self.kind.strain_per_unit()
     }
 
-    /// The file's text, with the columns that are there.
+    /// The file's text, with the columns that are there; beside Green strain engineering strain and nominal stress.
     pub fn to_csv(&self) -> String {
         let [axis, stiffness, stress, low, high] = self.kind.columns();
+        let [strains, stresses] = self.engineering();
         let columns: Vec<(&str, &[f64])> = [
             (axis, Some(&self.strains)),
             (stiffness, self.stiffnesses.as_ref()),
             (stress, Some(&self.stresses)),
             (low, self.band[0].as_ref()),
             (high, self.band[1].as_ref()),
+            (ENGINEERING[0], strains.as_ref()),
+            (ENGINEERING[1], stresses.as_ref()),
         ]
         .into_iter()
         .filter_map(|(name, values)| Some((name, &values?[..])))
@@ -260,11 +339,36 @@ impl CurveFile {
         let mut text = columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",") + "\n";
         for row in 0..self.strains.len() {
             for (column, (_, values)) in columns.iter().enumerate() {
-                let _ = write!(text, "{}{}", if column == 0 { "" } else { "," }, values[row]);
+                let comma = if column == 0 { "" } else { "," };
+                let value = if values[row].is_nan() { String::new() } else { values[row].to_string() };
+                let _ = write!(text, "{comma}{value}");
             }
             text.push('\n');
         }
         text
+    }
+
+    /// The columns beside Green strain and its stress.
+    fn engineering(&self) -> [Option<Vec<f64>>; 2] {
+        let rows = self.strains.iter().zip(&self.stresses);
+        let rows: Option<Vec<_>> = rows.map(|(&e, &s)| self.kind.engineering(e, s)).collect();
+        [0, 1].map(|column| rows.as_ref().map(|rows| rows.iter().map(|row| row[column]).collect()))
+    }
+
+    /// Refuses columns beside Green strain that say something else than it does.
+    fn check_beside(&self, columns: [Option<Vec<f64>>; 2]) -> Result<()> {
+        for ((given, own), name) in columns.iter().zip(self.engineering()).zip(ENGINEERING) {
+            let (Some(given), Some(own)) = (given, own) else { continue };
+            let largest = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            let differs = |row: &usize| !((given[*row] - own[*row]).abs() <= 1e-6 * largest);
+            if let Some(row) = (0..own.len()).find(differs) {
+                let [axis, _, stress, ..] = self.kind.columns();
+                let expected =
+                    format!("{}, from {axis} and {stress} (leave the column out after an edit)", own[row]);
+                return Err(self.refuse(Some(row), name, given[row].to_string(), expected));
+            }
+        }
+        Ok(())
     }
 
     /// True if a row lies below zero.
@@ -281,10 +385,11 @@ impl CurveFile {
     }
 
     fn check_component(&self, component: Component, model: Model) -> Result<()> {
-        if Kind::of(component) != self.kind {
-            let [axis, _, stress, ..] = Kind::of(component).columns();
+        let wanted = Kind::of(component, model);
+        if self.kind != wanted && (self.kind != Kind::Membrane || wanted == Kind::Bending) {
+            let [axis, _, stress, ..] = wanted.columns();
             let [found, ..] = self.kind.columns();
-            let expected = format!("{axis} and {stress}, as {component} has");
+            let expected = format!("{axis} and {stress}, as {component} of {model} has");
             return Err(self.refuse(None, "header", format!("a column {found}"), expected));
         }
         if component.is_bending() && model == Model::Springs {

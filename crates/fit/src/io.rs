@@ -30,6 +30,7 @@ mod tests;
 mod toml_file;
 mod unit;
 
+pub(crate) use number::check_length;
 pub(crate) use source::{read_text, shortened, shown};
 
 pub use obj::{YarnAxes, read_mesh};
@@ -39,6 +40,7 @@ pub use toml_file::TomlFile;
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, Frame, MeasurementSet, Sequence};
 use crate::store::{replace_folder, write_file};
+use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -69,6 +71,7 @@ pub fn read_json<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<T> {
 /// A file is missing, or does not say what it should.
 pub fn read_set(folder: &Path) -> Result<MeasurementSet> {
     let present = entries(folder)?;
+    check_set(folder, &present)?;
     let fabric = read_fabric(folder)?;
     let folders = present.into_iter().filter(|(_, is_folder)| *is_folder);
     let sequences = folders.map(|(name, _)| read_sequence(&folder.join(name))).collect::<Result<_>>()?;
@@ -108,7 +111,7 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
     }
     let shapes = shapes::read(folder, &present, mesh.len())?;
     let mut frames =
-        if bends { bending_frames(folder, shapes)? } else { clipped_frames(folder, &test, shapes)? };
+        if bends { bending_frames(folder, shapes)? } else { clipped_frames(folder, &test, &mesh, shapes)? };
     if present.contains_key("forces.csv") {
         forces::read(&folder.join("forces.csv"), &test.clips, &mut frames)?;
     }
@@ -208,9 +211,11 @@ fn bending_frames(folder: &Path, shapes: Option<Vec<Option<npy::Shape>>>) -> Res
 fn clipped_frames(
     folder: &Path,
     test: &test_file::TestFile,
+    mesh: &Mesh,
     shapes: Option<Vec<Option<npy::Shape>>>,
 ) -> Result<Vec<Frame>> {
-    let poses = clips::read(&folder.join("clips.csv"), &test.clips)?;
+    let reach = mesh.positions.iter().map(Vector3::norm).fold(0.0, f64::max);
+    let poses = clips::read(&folder.join("clips.csv"), &test.clips, reach)?;
     let shapes = shapes.unwrap_or_else(|| vec![None; poses.len()]);
     if shapes.len() != poses.len() {
         let found = format!("{} frames", shapes.len());
@@ -219,6 +224,23 @@ fn clipped_frames(
     }
     let frame = |(poses, positions)| Frame { poses, positions, ..Frame::default() };
     Ok(poses.into_iter().zip(shapes).map(frame).collect())
+}
+
+/// A folder that is no set may hold some, or be a part of one.
+fn check_set(folder: &Path, present: &Entries) -> Result<()> {
+    if present.contains_key("fabric.toml") {
+        return Ok(());
+    }
+    let refuse = |found: String, expected: &str| Err(Error::input(folder, None, "folder", found, expected));
+    if present.contains_key("test.toml") {
+        return refuse("a sequence of a set".into(), "the set, which is the folder above it");
+    }
+    let is_set = |(name, _): &(&String, &bool)| folder.join(name).join("fabric.toml").exists();
+    let sets: Vec<&str> = present.iter().filter(is_set).map(|(name, _)| name.as_str()).collect();
+    match sets.is_empty() {
+        true => Ok(()),
+        false => refuse(format!("a folder of sets: {}", shortened(&sets.join(", "), 300)), "one of them"),
+    }
 }
 
 /// The names in a folder.

@@ -8,6 +8,7 @@ mod entry;
 pub use control_point::{ControlPoint, Unit};
 pub use entry::{Correlation, CurveEntry, ResidualEntry};
 
+use crate::curve_file::Kind;
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet};
 use crate::incremental::{Failure, FitReport};
@@ -41,6 +42,9 @@ pub struct MaterialFile {
     pub compression: Compression,
     /// The sample that was measured.
     pub fabric: Fabric,
+    /// What each curve gives over what, in words.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub measures: BTreeMap<Component, String>,
     /// One entry a component, observed or not.
     #[serde(deserialize_with = "unique")]
     pub curves: BTreeMap<Component, CurveEntry>,
@@ -106,6 +110,7 @@ impl MaterialFile {
             variant: settings.variant,
             compression: settings.compression,
             fabric: set.fabric.clone(),
+            measures: Component::ALL.into_iter().map(|c| (c, measure(settings.model, c))).collect(),
             curves: Component::ALL.into_iter().map(|component| (component, entry(component))).collect(),
             residuals: sequences
                 .iter()
@@ -190,6 +195,21 @@ impl MaterialFile {
     }
 }
 
+/// What a component's curve gives over what.
+fn measure(model: Model, component: Component) -> String {
+    let [strain, stress] = Kind::of(component, model).names();
+    match (component.is_bending(), model) {
+        (false, _) => format!("{stress} per width [N/m] over {strain} [1]"),
+        (true, Model::Springs) => {
+            "stress of ring-2 springs [N/m] over their strain [1], of this grid only".into()
+        }
+        (true, _) => format!(
+            "{stress} [N] over the strain of hinges [1/m], three times the curvature: stiffness_n_m is a third of the flexural \
+             rigidity, rigidity_n_m"
+        ),
+    }
+}
+
 /// A control point that makes no curve.
 struct Defect {
     component: Component,
@@ -245,13 +265,13 @@ mod tests {
             (
                 Component::BendWarp,
                 Unit::NewtonMetre,
-                r#"{"strain":0.0,"stiffness_n_m":1e-6,"deviation_n_m":1e-8}"#,
+                r#"{"strain":6.0,"stiffness_n_m":1e-6,"deviation_n_m":1e-8,"curvature_per_m":2.0,"rigidity_n_m":3e-6}"#,
             ),
         ] {
             let entry = entry(text).unwrap();
             assert_eq!(entry.control_points[0].unit, unit);
             assert_eq!(serde_json::to_string(&entry.control_points[0]).unwrap(), text);
-            assert!(entry.curve(Model::Stvk, component, cloth_sim::curve::NegativeStrain::Odd).is_ok());
+            assert_eq!(Unit::of(Model::Stvk, component), unit);
         }
     }
 
@@ -285,6 +305,9 @@ mod tests {
             r#"{"strain":0.0,"stiffness_n_m":1.0,"stiffness_n_per_m":1.0}"#,
             r#"{"strain":0.0,"stiffness_n_m":1.0,"deviation_n_per_m":1.0}"#,
             r#"{"strain":0.0,"stiffness_n":1.0}"#,
+            r#"{"strain":0.0,"stiffness_n_m":1.0,"rigidity_n_m":1.0}"#,
+            r#"{"strain":6.0,"stiffness_n_m":1.0,"curvature_per_m":6.0}"#,
+            r#"{"strain":0.0,"stiffness_n_per_m":1.0,"rigidity_n_m":3.0}"#,
         ] {
             assert!(entry(text).is_err(), "{text}");
         }

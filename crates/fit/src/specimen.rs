@@ -183,6 +183,14 @@ impl Rectangle {
     }
 }
 
+/// The two sides of the rest rectangle, m.
+///
+/// # Errors
+/// A rest mesh that is not a flat rectangle.
+pub(crate) fn rest_size(sequence: &Sequence) -> Result<[f64; 2]> {
+    Ok(Rectangle::of(sequence)?.size)
+}
+
 /// Twice the area of every triangle at rest, along its normal, m².
 fn normals(mesh: &Mesh) -> impl Iterator<Item = Vector3<f64>> + '_ {
     let corners = mesh.triangles.iter().map(|triangle| triangle.map(|vertex| mesh.positions[vertex]));

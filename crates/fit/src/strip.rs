@@ -62,7 +62,7 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Sequence> {
     test.validate()?;
     let (mesh, pull) =
         test.specimen().map_err(|source| Error::Mechanics { context: test.name.clone(), source })?;
-    let table = Table::read(path)?;
+    let table = Table::read_columns(path, &test.columns())?;
     let readings = readings(&table, test)?;
     let phases = phases(readings.iter().map(|reading| (reading.branch, reading.separation)));
     let frame = |branch: usize, phase, shift: f64, cords| Frame {
@@ -103,8 +103,8 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
     let extension = Series::find(table, column, quantity)?;
     let force = Series::find(table, &test.force, Quantity::Force)?;
     let branch = match &test.branch_column {
-        Some(name) => Some(column::place(table, name)?),
-        None => table.column(BRANCH),
+        Some(name) => Some(table.place(name)?),
+        None => table.column(BRANCH).map(|_| table.place(BRANCH)).transpose()?,
     };
     let mut readings = Vec::new();
     for row in chosen_rows(table, test.rows.as_ref())? {

@@ -67,7 +67,7 @@ pub enum Error {
         triangle: usize,
     },
     /// Rest position and material coordinates disagree in an edge's length by more than 1 %.
-    #[error("edge {}-{}: {rest} m between rest positions, {material} m between material coordinates; they must agree within 1 % (millimetres?)", edge[0], edge[1])]
+    #[error("edge {}-{}: {rest} m between rest positions, {material} m between material coordinates; they must agree within 1 %{}", edge[0], edge[1], unit_between(*rest, *material))]
     EdgeLength {
         /// The edge's vertices.
         edge: [usize; 2],
@@ -145,6 +145,15 @@ pub struct Part {
     pub vertex: usize,
     /// How many vertices it has.
     pub vertices: usize,
+}
+
+/// The unit in which one of two lengths may be, if the other is in metres.
+fn unit_between(first: f64, second: f64) -> &'static str {
+    match first.max(second) / first.min(second) {
+        900.0..1100.0 => " (millimetres?)",
+        90.0..110.0 => " (centimetres?)",
+        _ => "",
+    }
 }
 
 fn listed(parts: &[Part]) -> String {

@@ -1,7 +1,7 @@
 //! `fit-cloth stretch | shear | bend | fit`: curves from a measurement set.
 
 use super::goal::Goal;
-use super::{Outcome, program, recalled, warn};
+use super::{Outcome, program, recalled, warn, warn_of_defects};
 use crate::failure::Failure;
 use crate::options::{FitFlags, Telling, refuse_within};
 use crate::output::Output;
@@ -9,7 +9,7 @@ use crate::page::{Fit, Frames, Page};
 use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::text;
-use cloth_fit::check::refuse_unstable;
+use cloth_fit::check::{check_material, refuse_unstable};
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::incremental::{self, Finished, FitReport, Memory};
@@ -64,7 +64,9 @@ pub fn run(
     for notice in results.iter().take(1).flat_map(|fitted| &fitted.report.notices) {
         warn(telling, &notice.to_string());
     }
-    for Fitted { report, .. } in &results {
+    for Fitted { report, material } in &results {
+        // Those that were given are among them.
+        warn_of_defects(telling, &report.model.to_string(), &check_material(material)?);
         for failure in &report.failures {
             warn(telling, &format!("{}: {}", report.model, failure.in_words()));
         }

@@ -1,6 +1,6 @@
 //! `fit-cloth simulate`: a scene of a material, in motion or at rest.
 
-use super::{Outcome, tell};
+use super::{Outcome, tell, warn_of_defects};
 use crate::failure::Failure;
 use crate::options::{CompressionChoice, Telling, refuse_within};
 use crate::output::Output;
@@ -10,11 +10,12 @@ use crate::scene::Scene;
 use crate::simulation::{self, Simulation};
 use crate::text;
 use clap::{Args, ValueEnum};
-use cloth_fit::check::refuse_unstable;
+use cloth_fit::check::{check_curves, refuse_unstable};
 use cloth_fit::error::Error;
 use cloth_fit::io::ShapeFormat;
 use cloth_fit::material::Material;
 use cloth_fit::result::check_output;
+use cloth_sim::material::Curves;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -92,13 +93,16 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
         Some(choice) => material.with_compression(choice.into())?,
         None => material,
     };
+    // Only those that the scene takes.
+    let parts = scene.components(&material)?;
+    let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
+    let curves: Curves = curves.collect();
     if !options.allow_unstable {
-        // Only those that the scene takes.
-        let parts = scene.components(&material)?;
-        let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
-        refuse_unstable(&curves.collect(), &options.material)?;
+        refuse_unstable(&curves, &options.material)?;
     }
     let out = Output::claim(&folder)?;
+    let findings = check_curves(material.model, &curves, |_| None);
+    warn_of_defects(telling, &options.material.display().to_string(), &findings);
     let simulation = options.simulate(&scene, &material, telling)?;
     out.replace(|temporary| {
         simulation::write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;

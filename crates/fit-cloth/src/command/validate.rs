@@ -1,12 +1,13 @@
 //! `fit-cloth validate`: fitted curves on motions and samples that the fit did not see.
 
-use super::{Outcome, fit, tell};
+use super::{Outcome, fit, tell, warn_of_defects};
 use crate::failure::Failure;
 use crate::options::{SetFlags, Telling, parse_kind, refuse_within};
 use crate::plot::write_validation_plots;
 use crate::progress::Progress;
 use crate::text;
 use clap::Args;
+use cloth_fit::check::check_material;
 use cloth_fit::compare::VALIDATION;
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
@@ -62,6 +63,7 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
         return Err(fit::nothing(&options.on.set, &set, &kinds));
     }
+    warn_of_defects(telling, &options.material.display().to_string(), &check_material(&material)?);
     let progress = Progress::new("validating", !telling.quiet);
     let validation = validate(&set, &kinds, &curves, &options.settings(&material), &progress.watch());
     progress.finish();

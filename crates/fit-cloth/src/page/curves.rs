@@ -52,7 +52,7 @@ pub(super) fn curves(report: &FitReport) -> Vec<Curve> {
 }
 
 fn curve(report: &FitReport, component: Component) -> Curve {
-    let [x_label, y_label] = text::curve_labels(component).map(String::from);
+    let [x_label, y_label] = text::curve_labels(report.model, component);
     let stiffness_label = if component.is_bending() { "rigidity [N m]" } else { "stiffness [N/m]" }.into();
     let empty =
         Curve { component: component.to_string(), x_label, y_label, stiffness_label, ..Curve::default() };

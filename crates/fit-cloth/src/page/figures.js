@@ -46,7 +46,10 @@ function drawCurve(component, fits) {
     }
   };
   const hooks = { drawClear: [shade] };
-  chart("curve", tables, series, { x: own.x_label, y: own.y_label, bands, scales, hooks, sync: "curve" });
+  // Models differ in their strains: a number on a shared axis is each one's own.
+  const label = (axis, shared) => (new Set(curves.map(([, curve]) => curve[axis])).size > 1 ? shared : own[axis]);
+  const x = label("x_label", "strain, of each model [–]"), y = label("y_label", "stress, of each model [N/m]");
+  chart("curve", tables, series, { x, y, bands, scales, hooks, sync: "curve" });
   if (!own.observed) { clear("histogram"); return; }
   const { range: [from, to], shares } = own.histogram, width = (to - from) / shares.length;
   const middles = shares.map((_, i) => from + (i + 0.5) * width);

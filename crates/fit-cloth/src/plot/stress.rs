@@ -30,18 +30,18 @@ struct Plotted<'r> {
 /// A curve without extent.
 pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
     let component = stage.components[0];
-    let [x, y] = curve_labels(component);
+    let [x, y] = curve_labels(stage.model, component);
     // Moments are small numbers.
-    let (names, unit, seen) = match component.is_bending() {
-        true => ([x, "moment per width [mN]"], 1e3, "curvatures of all frames"),
-        false => ([x, y], 1.0, "strains of all frames"),
+    let (y, unit, seen) = match component.is_bending() {
+        true => (y.replace("[N]", "[mN]"), 1e3, "curvatures of all frames"),
+        false => (y, 1.0, "strains of all frames"),
     };
     let plotted = Plotted::new(stage, unit);
     let tallest = 110.0 * plotted.histogram.shares.iter().fold(0.0, |m: f64, share| m.max(*share));
     let shares = 0.0..if tallest > 0.0 { tallest } else { 1.0 };
     let [strains, stresses] = plotted.extents.clone();
     let title = format!("{}, {}", stage.name(), stage.model);
-    let axes = Axes { title: &title, x: (names[0], strains), y: (names[1], stresses.clone()) };
+    let axes = Axes { title: &title, x: (&x, strains), y: (&y, stresses.clone()) };
     figure_over(
         axes,
         |chart| {

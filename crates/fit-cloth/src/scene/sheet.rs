@@ -17,6 +17,17 @@ const MOST_NODES: usize = 1_000_000;
 /// Of a disc with almost as many nodes, 1 + 3·rings·(rings + 1).
 const MOST_RINGS: usize = 576;
 
+/// A sheet so many times its size from the origin loses digits: three of sixteen, and more with forces, which are
+/// differences.
+const FAR: f64 = 1e3;
+
+/// Where a sheet's origin is best: at itself if it is far from zero, to whole metres, so that moving it rounds nothing.
+pub(super) fn origin(mesh: &Mesh) -> Vector3<f64> {
+    let centre = mesh.positions.iter().sum::<Vector3<f64>>() / mesh.len() as f64;
+    let size = mesh.positions.iter().map(|position| (position - centre).norm()).fold(0.0, f64::max);
+    if centre.norm() > FAR * size { centre.map(f64::round) } else { Vector3::zeros() }
+}
+
 /// The mesh that the file describes.
 pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<Mesh> {
     let refuse = |key: &str, error: cloth_sim::error::Error| {

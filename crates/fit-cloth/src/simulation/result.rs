@@ -7,6 +7,8 @@ use cloth_fit::io::{ShapeFormat, write_shapes};
 use cloth_fit::material::Material;
 use cloth_fit::store::write_file;
 use cloth_sim::dynamics::{Integrator, LinearSolver, Newton};
+use cloth_sim::mesh::Mesh;
+use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -25,8 +27,10 @@ pub fn write_simulation(
     simulation: &Simulation,
     format: ShapeFormat,
 ) -> Result<()> {
-    let shapes: Vec<_> = simulation.frames.iter().map(|frame| frame.positions.clone()).collect();
-    write_shapes(folder, &scene.mesh, &shapes, format)?;
+    let placed = |positions: &[Vector3<f64>]| positions.iter().map(|p| p + scene.origin).collect::<Vec<_>>();
+    let shapes: Vec<_> = simulation.frames.iter().map(|frame| placed(&frame.positions)).collect();
+    let mesh = Mesh { positions: placed(&scene.mesh.positions), ..scene.mesh.clone() };
+    write_shapes(folder, &mesh, &shapes, format)?;
     if !simulation.rows.is_empty() {
         write_file(&folder.join("energies.csv"), energies(&simulation.rows).as_bytes())?;
     }

@@ -1,6 +1,7 @@
 //! One stage: what it used, how it went, the curve.
 
 use super::{NO_KNOWLEDGE, interventions, list, seen, unit};
+use cloth_fit::curve_file::Kind;
 use cloth_fit::report::StageReport;
 use cloth_fit::simulation::Objective;
 use std::fmt::Write;
@@ -101,9 +102,9 @@ fn curve(stage: &StageReport) -> String {
         let seen = format!("{} of {} directions", report.rank, report.curve.len());
         return format!("  NOT observed: the measurements do not tell the curve's scale ({seen} seen)\n");
     }
-    let [strain, stiffness, stress] = match stage.components[0].is_bending() {
-        true => ["curvature [1/m]", "rigidity [N m]", "moment [N]"],
-        false => ["strain", "stiffness [N/m]", "stress [N/m]"],
+    let [strain, stiffness, stress] = match Kind::of(stage.components[0], stage.model) {
+        Kind::Bending => ["curvature [1/m]", "rigidity [N m]", "moment [N]"],
+        kind => [kind.names()[0], "stiffness [N/m]", "stress [N/m]"],
     };
     let mut text = format!(
         "  {strain:<15}  {stiffness:>15}             {stress:>12}   (seen from {}, {:.0} % of the range)\n",

@@ -1,28 +1,42 @@
 //! Reading a curve's table.
 
-use super::{CurveFile, Kind};
+use super::{CurveFile, ENGINEERING, Kind};
 use crate::error::Result;
 use crate::io::table::Table;
 use std::path::Path;
 
 impl CurveFile {
-    /// Reads a table: `strain` and `stress_n_per_m`, or `curvature_per_m` and `moment_n`; with them, if they are there,
-    /// the other columns that fit-cloth writes of a curve.
+    /// Reads a table: `strain` and `stress_n_per_m`, `curvature_per_m` and `moment_n`, or those of another
+    /// [`Kind`]; with them, if they are there, the other columns that fit-cloth writes of a curve.
     ///
     /// # Errors
-    /// Not a table of such columns; a field that is no finite number; strains that do not ascend; no row.
+    /// Not a table of such columns; columns that contradict each other; a field that is no finite number (of
+    /// a band it may be empty); strains that do not ascend; no row.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Table::read(path)?;
-        let bends = Kind::Bending.columns().iter().any(|name| table.column(name).is_some());
-        let kind = if bends { Kind::Bending } else { Kind::Membrane };
+        let names = |kind: &Kind| [kind.columns()[0], kind.columns()[2]];
+        let is_of = |kind: &Kind| names(kind).iter().any(|name| table.has_quantity(name));
+        let kind = Kind::ALL.into_iter().find(is_of).unwrap_or(Kind::Membrane);
         let [axis, stiffness, stress, low, high] = kind.columns();
-        let ([x, y], optional) = table.require([axis, stress], [stiffness, low, high])?;
+        // Other kinds have none beside their own.
+        let beside = if kind == Kind::Green { ENGINEERING } else { [axis, stress] };
+        let ([x, y], [k, a, b, e, p]) =
+            table.require([axis, stress], [stiffness, low, high, beside[0], beside[1]])?;
         let column = |place: usize| -> Result<Vec<f64>> {
             (0..table.rows()).map(|row| table.number(row, place)).collect()
         };
-        let [stiffnesses, low, high] = optional.map(|place| place.map(column).transpose());
+        // A row that the data do not see has no band.
+        let cells = |place: usize| -> Result<Vec<f64>> {
+            let empty = |row: usize| table.text(row, place).is_empty();
+            (0..table.rows())
+                .map(|row| if empty(row) { Ok(f64::NAN) } else { table.number(row, place) })
+                .collect()
+        };
+        let [stiffnesses, strains, stresses] = [k, e, p].map(|place| place.map(column).transpose());
+        let [low, high] = [a, b].map(|place| place.map(cells).transpose());
         let lines = (0..table.rows()).map(|row| table.line(row)).collect();
         let file = Self::new(kind, column(x)?, column(y)?, path, lines)?;
+        file.check_beside([strains?, stresses?])?;
         Ok(Self { stiffnesses: stiffnesses?, band: [low?, high?], ..file })
     }
 }

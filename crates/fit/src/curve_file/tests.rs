@@ -37,7 +37,7 @@ fn moments_over_curvature_become_stresses_of_hinges() {
     let error = curve(text, Component::BendWarp, Model::Springs).unwrap_err().to_string();
     assert!(error.contains("model: found moments over curvature"), "{error}");
     let error = curve(text, Component::Shear, Model::Stvk).unwrap_err().to_string();
-    assert!(error.contains("found a column curvature_per_m, expected strain"), "{error}");
+    assert!(error.contains("found a column curvature_per_m, expected shear_strain"), "{error}");
 }
 
 #[test]
@@ -156,4 +156,73 @@ fn control_points_of_another_curve_become_rows_above_those_below_zero() {
     assert_eq!(rows.strains, [0.0, 20.0]);
     assert!((rows.stresses[1] - 6e-4).abs() < 1e-18 && (rows.stiffnesses.unwrap()[1] - 3e-5).abs() < 1e-18);
     assert_eq!(file.strain_per_unit(), 1.0);
+}
+
+/// A strip pulled by a tenth and by a fifth: nominal stresses of 200 and 600 N/m.
+const GREEN: &str = "green_strain,pk2_stress_n_per_m\n0,0\n0.105,181.8181818181818\n0.22,500\n";
+
+#[test]
+fn beside_green_strain_stand_engineering_strain_and_nominal_stress() {
+    let file = read(GREEN).unwrap();
+    assert_eq!(file.kind, Kind::Green);
+    let text = file.to_csv();
+    let mut rows = text.lines();
+    let header = "green_strain,pk2_stress_n_per_m,engineering_strain,nominal_stress_n_per_m";
+    assert_eq!(rows.next(), Some(header));
+    for (row, expected) in rows.zip([[0.0, 0.0], [0.1, 200.0], [0.2, 600.0]]) {
+        let found: Vec<f64> = row.split(',').skip(2).map(|field| field.parse().unwrap()).collect();
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12 * b.max(1.0)), "{row}");
+    }
+    // They are read back; after an edit of one column alone they contradict it.
+    let again = read(&text).unwrap();
+    assert_eq!((&again.strains, &again.stresses), (&file.strains, &file.stresses));
+    let error = read(&text.replace(",500,", ",550,")).unwrap_err().to_string();
+    assert!(error.contains(":4 nominal_stress_n_per_m: found 600") && error.contains("660"), "{error}");
+    // Nothing is left of a length at a strain of −1/2.
+    let folded = read("green_strain,pk2_stress_n_per_m\n-0.5,-1\n0,0\n0.5,1\n").unwrap();
+    assert!(folded.to_csv().starts_with("green_strain,pk2_stress_n_per_m\n"));
+}
+
+#[test]
+fn a_table_says_whose_strain_it_is_over() {
+    let of = |header: &str| format!("{header}\n0,0\n0.1,12\n0.2,28\n");
+    let tables = [
+        ("green_strain,pk2_stress_n_per_m", Component::StretchWarp, Model::Stvk),
+        ("engineering_strain,nominal_stress_n_per_m", Component::StretchWarp, Model::SoftConstraint),
+        ("engineering_strain,nominal_stress_n_per_m", Component::StretchWeft, Model::Springs),
+        ("shear_strain,shear_stress_n_per_m", Component::Shear, Model::SoftConstraint),
+        ("diagonal_strain,diagonal_stress_n_per_m", Component::Shear, Model::Springs),
+    ];
+    for (header, component, model) in tables {
+        let named = curve(&of(header), component, model).unwrap();
+        assert_eq!(named, curve(&of("strain,stress_n_per_m"), component, model).unwrap());
+        assert_eq!(read(&of(header)).unwrap().kind, Kind::of(component, model));
+        for (_, other, another) in tables.iter().filter(|(other, ..)| *other != header) {
+            let error = curve(&of(header), *other, *another).unwrap_err().to_string();
+            let column = header.split(',').next().unwrap();
+            let owner = format!("as {other} of {another} has");
+            assert!(error.contains(&format!("found a column {column}")) && error.contains(&owner), "{error}");
+        }
+    }
+}
+
+#[test]
+fn quantities_in_other_units_are_named_with_the_unit_that_is_expected() {
+    let error = read("curvature [1/cm],moment [gf·cm/cm]\n0,0\n1,0.05\n").unwrap_err().to_string();
+    let words = "header: found curvature [1/cm], moment [gf·cm/cm], expected curvature_per_m (convert 1/cm to per metre), \
+                 moment_n (convert gf·cm/cm to newtons, newton metres per metre of width)";
+    assert!(error.contains(words), "{error}");
+}
+
+#[test]
+fn rows_without_a_band_stay_without_one() {
+    let text = BANDED.replace("-31,-29", ",").replace("29,31", ",");
+    let again = read(&text).unwrap().scaled(1.0, 2.0).to_csv();
+    let lines: Vec<&str> = again.lines().collect();
+    assert!(
+        lines[1].ends_with(",-60,,") && lines[3].ends_with(",60,,") && lines[4].ends_with(",100,96,102"),
+        "{again}"
+    );
+    let error = read(&BANDED.replace("29,31", "29,wide")).unwrap_err().to_string();
+    assert!(error.contains("stress_high_n_per_m: found wide"), "{error}");
 }

@@ -13,8 +13,13 @@ use std::path::Path;
 
 const COLUMNS: [&str; 9] = ["frame", "clip", "tx_m", "ty_m", "tz_m", "qw", "qx", "qy", "qz"];
 
+/// A pose may move a clip by so much through the rounding of its quaternion, m: what cameras see.
+const MOVED: f64 = 1e-4;
+
 /// Reads one pose a clip for every frame; rows may stand in any order.
-pub(super) fn read(path: &Path, clips: &[Clip]) -> Result<Vec<Vec<Isometry3<f64>>>> {
+///
+/// * `reach` — the specimen's largest distance from the origin, about which poses turn, m
+pub(super) fn read(path: &Path, clips: &[Clip], reach: f64) -> Result<Vec<Vec<Isometry3<f64>>>> {
     let table = Table::read(path)?;
     let ([frame, clip, tx, ty, tz, qw, qx, qy, qz], []) = table.require(COLUMNS, [])?;
     let mut poses = BTreeMap::new();
@@ -23,7 +28,7 @@ pub(super) fn read(path: &Path, clips: &[Clip]) -> Result<Vec<Vec<Isometry3<f64>
         let key = (table.index(row, frame)?, index_of(&table, row, clip, clips)?);
         let translation = Translation3::new(number(tx)?, number(ty)?, number(tz)?);
         let quaternion = Quaternion::new(number(qw)?, number(qx)?, number(qy)?, number(qz)?);
-        let pose = Isometry3::from_parts(translation, rotation(&table, row, quaternion)?);
+        let pose = Isometry3::from_parts(translation, rotation(&table, row, quaternion, reach)?);
         if poses.insert(key, pose).is_some() {
             let found = format!("frame {} of {} twice", key.0, shown(&clips[key.1].name));
             return Err(table.invalid(row, "frame", found, "one pose for every clip and frame"));
@@ -65,12 +70,23 @@ pub(super) fn write(path: &Path, clips: &[Clip], frames: &[Frame]) -> Result<()>
 }
 
 /// Unit length within 1e-6 is accepted; what is not rounding of the last digits is then made exact.
-fn rotation(table: &Table, row: usize, quaternion: Quaternion<f64>) -> Result<UnitQuaternion<f64>> {
+fn rotation(
+    table: &Table,
+    row: usize,
+    quaternion: Quaternion<f64>,
+    reach: f64,
+) -> Result<UnitQuaternion<f64>> {
     let error = (quaternion.norm() - 1.0).abs();
     if error > UNIT_LENGTH {
         let found = format!("a quaternion of length {}", quaternion.norm());
         let expected = "unit length: qw first, then qx, qy, qz";
         return Err::<_, Error>(table.invalid(row, "qw,qx,qy,qz", found, expected));
+    }
+    // Its length errs as much as its direction does; the last digits of a number always do.
+    if error > 1e-14 && error * reach > MOVED {
+        let found = format!("a quaternion whose length errs by {error:.1e}, {reach:.0} m from the origin");
+        let expected = "more digits, or an origin nearby: poses turn about it";
+        return Err(table.invalid(row, "qw,qx,qy,qz", found, expected));
     }
     Ok(if error < 1e-14 {
         UnitQuaternion::new_unchecked(quaternion)

@@ -1,5 +1,6 @@
 //! `fabric.toml`: the sample.
 
+use super::number::check_length;
 use super::toml_file::{TomlFile, written};
 use crate::error::Result;
 use crate::frame::Fabric;
@@ -13,21 +14,20 @@ pub(super) fn read(path: &Path) -> Result<Fabric> {
     if fabric.name.trim().is_empty() {
         return Err(file.invalid("name", "nothing", "the fabric's name"));
     }
-    let limits = [
-        ("width_m", Some(fabric.width_m), 10.0, "a length above 0 and at most 10 m (millimetres?)"),
-        ("height_m", Some(fabric.height_m), 10.0, "a length above 0 and at most 10 m (millimetres?)"),
-        (
-            "areal_density_kg_m2",
-            Some(fabric.areal_density_kg_m2),
-            10.0,
-            "kilograms per square metre, above 0 and at most 10 (convert g/m² to kg/m²: divide by 1000)",
-        ),
-        ("thickness_m", fabric.thickness_m, 0.1, "a thickness above 0 and at most 0.1 m (millimetres?)"),
+    let lengths = [
+        ("width_m", Some(fabric.width_m), 10.0),
+        ("height_m", Some(fabric.height_m), 10.0),
+        ("thickness_m", fabric.thickness_m, 0.1),
     ];
-    for (key, value, most, expected) in limits {
-        if let Some(value) = value.filter(|&value| !(value > 0.0 && value <= most)) {
-            return Err(file.invalid(key, value.to_string(), expected));
-        }
+    for (key, value, most) in lengths {
+        let Some(value) = value else { continue };
+        check_length(value, most).map_err(|expected| file.invalid(key, value.to_string(), expected))?;
+    }
+    let density = fabric.areal_density_kg_m2;
+    if !(density > 0.0 && density <= 10.0) {
+        let expected =
+            "kilograms per square metre, above 0 and at most 10 (convert g/m² to kg/m²: divide by 1000)";
+        return Err(file.invalid("areal_density_kg_m2", density.to_string(), expected));
     }
     Ok(fabric)
 }

@@ -57,16 +57,33 @@ pub(super) fn read(path: &Path, vertices: usize) -> Result<Vec<Shape>> {
         _ => f64::NAN,
     };
     let vertex = |bytes: &[u8]| Vector3::from_iterator(bytes.chunks_exact(size).map(number));
-    Ok(data
-        .chunks_exact(3 * size * vertices)
-        .map(|frame| frame.chunks_exact(3 * size).map(vertex).collect())
-        .collect())
+    let frames = data.chunks_exact(3 * size * vertices);
+    let shapes: Vec<Shape> = frames.map(|frame| frame.chunks_exact(3 * size).map(vertex).collect()).collect();
+    let largest = shapes.iter().flatten().map(|position| position.amax()).fold(0.0, f64::max);
+    // What is infinite is refused where its frame and vertex are known.
+    if size == 4 && largest > FAR && largest.is_finite() {
+        let found = format!("float32 coordinates of {largest:.0} m");
+        let expected = "float64 so far away, or an origin nearby (or millimetres? then divide by 1000)";
+        return Err(refuse("data", found, expected));
+    }
+    Ok(shapes)
 }
 
-/// The array as float32: 6 nm at 0.1 m, finer than any camera. A frame without a shape is NaN throughout.
+/// Beyond, float32 tells no two places apart by less than what cameras see, 0.06 mm. m.
+const FAR: f64 = 1e3;
+
+/// True if shapes reach so far that float32 would cost more than instruments do.
+pub(super) fn are_far<'a>(shapes: impl IntoIterator<Item = &'a Shape>) -> bool {
+    shapes.into_iter().flatten().any(|position| position.amax() > FAR)
+}
+
+/// The array as float32: 6 nm at 0.1 m, finer than any camera; as float64 where it reaches [`FAR`]. A frame without a
+/// shape is NaN throughout.
 pub(super) fn written(shapes: &[Option<&Shape>], vertices: usize) -> Vec<u8> {
+    let far = are_far(shapes.iter().copied().flatten());
+    let (descr, frames) = (if far { "<f8" } else { "<f4" }, shapes.len());
     let mut header =
-        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {vertices}, 3), }}", shapes.len());
+        format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({frames}, {vertices}, 3), }}");
     // The header ends with a line feed, and the data starts at a multiple of 64 bytes.
     while !(MAGIC.len() + 4 + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
@@ -80,7 +97,10 @@ pub(super) fn written(shapes: &[Option<&Shape>], vertices: usize) -> Vec<u8> {
         for vertex in 0..vertices {
             let position =
                 shape.and_then(|shape| shape.get(vertex).copied()).unwrap_or(Vector3::repeat(f64::NAN));
-            bytes.extend(position.iter().flat_map(|&value| (value as f32).to_le_bytes()));
+            match far {
+                true => bytes.extend(position.iter().flat_map(|value| value.to_le_bytes())),
+                false => bytes.extend(position.iter().flat_map(|&value| (value as f32).to_le_bytes())),
+            }
         }
     }
     bytes

@@ -18,3 +18,30 @@ pub(super) fn number(text: &str) -> Result<f64, &'static str> {
         Err(_) => Err("a number"),
     }
 }
+
+/// Refuses a length that is not above 0 and at most so many metres.
+///
+/// # Errors
+/// What was expected; the unit that a longer one may be in.
+pub(crate) fn check_length(value: f64, most: f64) -> Result<(), String> {
+    let unit = match value > most && value.is_finite() {
+        // Nothing is as thick in centimetres as a sheet is wide in metres.
+        true if most < 1.0 => " (millimetres?)",
+        true => " (millimetres or centimetres?)",
+        false => "",
+    };
+    if value > 0.0 && value <= most {
+        Ok(())
+    } else {
+        Err(format!("a length above 0 and at most {most} m{unit}"))
+    }
+}
+
+/// Reads a finite number, or `nan` for what was not observed.
+///
+/// # Errors
+/// What was expected, if the text is neither.
+pub(super) fn number_or_unseen(text: &str) -> Result<f64, &'static str> {
+    // Printed with its sign bit a nan may have a sign.
+    if text.trim_start_matches(['+', '-']).eq_ignore_ascii_case("nan") { Ok(f64::NAN) } else { number(text) }
+}

@@ -1,8 +1,9 @@
 //! Wavefront OBJ: only what a measured cloth needs of it, every error with its line.
 
-use super::number::number;
+use super::number::{number, number_or_unseen};
 use super::source::{read_text, shown};
 use crate::error::{Error, Result};
+use crate::specimen::bounds;
 use cloth_sim::error::Error as Defect;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Vector2, Vector3};
@@ -20,6 +21,9 @@ pub struct YarnAxes {
     /// Along warp.
     pub warp: Vector3<f64>,
 }
+
+/// What to do about the coordinates of a texture.
+const TEXTURE: &str = "vt in metres; these, from 0 to 1, are texture coordinates: multiply u by the sample's width and v by its height";
 
 /// Reads a rest mesh; polygons are split into triangles from their first corner.
 ///
@@ -40,6 +44,23 @@ pub fn read_mesh(path: &Path, axes: Option<YarnAxes>) -> Result<Mesh> {
     obj.mesh()
 }
 
+/// The statements of a text without comments, each with the line that it begins in: a `\` at the end of a line joins the
+/// next one to it.
+fn statements(text: &str) -> Vec<(usize, String)> {
+    let mut statements: Vec<(usize, String)> = Vec::new();
+    let mut goes_on = false;
+    for (line, text) in (1..).zip(text.lines()) {
+        let text = text.split('#').next().unwrap_or_default().trim_end();
+        let (words, more) = text.strip_suffix('\\').map_or((text, false), |words| (words, true));
+        match statements.last_mut().filter(|_| goes_on) {
+            Some((_, statement)) => *statement += &format!(" {words}"),
+            None => statements.push((line, words.into())),
+        }
+        goes_on = more;
+    }
+    statements
+}
+
 /// What stands in an OBJ file.
 pub(super) struct Obj {
     path: PathBuf,
@@ -54,8 +75,8 @@ impl Obj {
         let text = read_text(path)?;
         let (vertices, coordinates, faces) = Default::default();
         let mut obj = Self { path: path.to_path_buf(), vertices, coordinates, faces };
-        for (index, line) in text.lines().enumerate() {
-            obj.read_line(index + 1, line.split('#').next().unwrap_or_default())?;
+        for (line, words) in statements(&text) {
+            obj.read_line(line, &words)?;
         }
         for (line, corners) in &obj.faces {
             for &(vertex, coordinate) in corners {
@@ -83,10 +104,15 @@ impl Obj {
             }
         }
         let positions: Vec<_> = self.vertices.iter().map(|(_, position)| *position).collect();
+        let is_texture = fill_unit_square(&material);
         Mesh::new(positions, material, triangles.clone()).map_err(|defect| {
             let line = self.line_of(&defect, &triangles, &lines);
             let found = format!("{defect} (counted from 0)");
-            Error::input(&self.path, line, "mesh", found, "a sheet of cloth in metres")
+            let expected = match defect {
+                Defect::EdgeLength { .. } if is_texture => TEXTURE,
+                _ => "a sheet of cloth in metres",
+            };
+            Error::input(&self.path, line, "mesh", found, expected)
         })
     }
 
@@ -147,9 +173,8 @@ impl Obj {
             ));
         }
         for (value, word) in values.iter_mut().zip(words) {
-            if !(unseen && word.eq_ignore_ascii_case("nan")) {
-                *value = number(word).map_err(|expected| self.invalid(line, field, shown(word), expected))?;
-            }
+            let read = if unseen { number_or_unseen(word) } else { number(word) };
+            *value = read.map_err(|expected| self.invalid(line, field, shown(word), expected))?;
         }
         Ok(values)
     }
@@ -258,6 +283,13 @@ impl Obj {
     ) -> Error {
         Error::input(&self.path, line, field, found, expected)
     }
+}
+
+/// True for coordinates as those of a texture are: from 0 to 1 in both directions.
+fn fill_unit_square(coordinates: &[Vector2<f64>]) -> bool {
+    let [low, high] = bounds(coordinates.iter().copied());
+    // A texture leaves a margin, at most.
+    low.amin() >= 0.0 && high.amax() <= 1.0 && (high - low).amin() > 0.9
 }
 
 /// A mesh as the text of an OBJ file that reads back to the same bits.

@@ -1,15 +1,18 @@
 //! Vertices of a PLY file, text or binary; a shape as one.
 
+use super::number::number_or_unseen;
 use super::source::{decoded, read_bytes, shown};
 use crate::error::{Error, Result};
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, KeyMap, Property, PropertyAccess, PropertyAccessResult, PropertyType,
+};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Reads x, y and z of the element `vertex`; in a binary file NaN = not observed.
+/// Reads x, y and z of the element `vertex`; NaN, in a text `nan`, = not observed.
 pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
     let mut bytes = read_bytes(path)?;
     if !is_binary(&bytes) {
@@ -28,38 +31,76 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
     let mut reader = Reader::new(bytes.as_slice());
     let parser = Parser::<Vertex>::new();
     let header = parser.read_header(&mut reader).map_err(|error| refuse(error, true))?;
-    let mut line = 1 + bytes.split(|&byte| byte == b'\n').position(|line| line == b"end_header").unwrap_or(0);
-    for (name, element) in &header.elements {
+    for (_, element) in &header.elements {
         check_size(path, element, bytes.len())?;
-        let vertices = parser
+    }
+    let Some(vertex) = header.elements.get("vertex") else {
+        return Err(Error::input(path, None, "element vertex", "nothing", "the vertices"));
+    };
+    if let Some(axis) = AXES.into_iter().find(|axis| !vertex.properties.contains_key(*axis)) {
+        return Err(Error::input(path, None, axis, "nothing", "x, y and z of the element vertex"));
+    }
+    if header.encoding == Encoding::Ascii {
+        return of_text(path, &String::from_utf8_lossy(&bytes), &header.elements);
+    }
+    let mut vertices = Vec::new();
+    for (name, element) in &header.elements {
+        vertices = parser
             .read_payload_for_element(&mut reader, element, &header)
-            .map_err(|error| refuse(error, header.encoding == Encoding::Ascii))?;
+            .map_err(|error| refuse(error, false))?;
         if name == "vertex" {
-            for axis in ["x", "y", "z"] {
-                if !element.properties.contains_key(axis) {
-                    return Err(Error::input(
-                        path,
-                        None,
-                        axis,
-                        "nothing",
-                        "x, y and z of the element vertex",
-                    ));
+            break;
+        }
+    }
+    Ok(vertices.into_iter().map(|vertex| vertex.0).collect())
+}
+
+/// The axes, as properties of a vertex.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The vertices of a text, which has a line a row; the parser of binary files knows no `nan`.
+fn of_text(path: &Path, text: &str, elements: &KeyMap<ElementDef>) -> Result<Vec<Vector3<f64>>> {
+    let rows = (1..).zip(text.lines()).skip_while(|(_, line)| line.trim() != "end_header").skip(1);
+    let mut vertices = Vec::new();
+    let mut first = 0;
+    for (name, element) in elements {
+        if name == "vertex" {
+            let rows = rows.skip(first).take(element.count);
+            vertices = rows.map(|(line, row)| vertex_of(path, line, row, element)).collect::<Result<_>>()?;
+            if vertices.len() < element.count {
+                let found = format!("{} rows", vertices.len());
+                return Err(Error::input(path, None, "element vertex", found, element.count.to_string()));
+            }
+            break;
+        }
+        first += element.count;
+    }
+    Ok(vertices)
+}
+
+/// The vertex of a row of a text.
+fn vertex_of(path: &Path, line: usize, row: &str, element: &ElementDef) -> Result<Vector3<f64>> {
+    let mut words = row.split_whitespace();
+    let mut vertex = Vector3::zeros();
+    for (name, property) in &element.properties {
+        let word = words.next().unwrap_or_default();
+        let refuse = |expected: &str| Error::input(path, line, shown(name), shown(word), expected);
+        match AXES.iter().position(|axis| axis == name) {
+            Some(axis) => vertex[axis] = number_or_unseen(word).map_err(refuse)?,
+            None if word.is_empty() => return Err(refuse("a value for every property")),
+            None => {
+                if let PropertyType::List(..) = property.data_type
+                    && let Some(last) = word.parse::<usize>().ok().and_then(|count| count.checked_sub(1))
+                {
+                    words.nth(last);
                 }
             }
-            let shape: Vec<Vector3<f64>> = vertices.into_iter().map(|vertex| vertex.0).collect();
-            let infinite = |p: &Vector3<f64>| p.iter().any(|value| value.is_infinite());
-            return match shape.iter().position(infinite).filter(|_| header.encoding == Encoding::Ascii) {
-                Some(vertex) => {
-                    let found = shown(&format!("{:?}", shape[vertex].as_slice()));
-                    Err(Error::input(path, line + vertex + 1, "vertex", found, "finite numbers"))
-                }
-                None => Ok(shape),
-            };
         }
-        // A text has a line a row.
-        line += element.count;
     }
-    Err(Error::input(path, None, "element vertex", "nothing", "the vertices"))
+    match words.next() {
+        Some(word) => Err(Error::input(path, line, "row", shown(word), "nothing after the last property")),
+        None => Ok(vertex),
+    }
 }
 
 /// True if the header says so: what stands below it is then no text.

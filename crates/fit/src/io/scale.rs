@@ -1,5 +1,6 @@
-//! Millimetres read as metres: lengths that no cloth can reach.
+//! Another unit read as metres: lengths that no cloth can reach.
 
+use super::npy::are_far;
 use super::shapes;
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Frame};
@@ -9,8 +10,8 @@ use std::path::Path;
 
 /// No specimen is larger, m.
 const LARGEST_SPECIMEN: f64 = 10.0;
-/// What is expected instead.
-const METRES: &str = "metres (convert millimetres to metres?)";
+/// What is expected where the length does not tell the unit.
+const METRES: &str = "metres (convert millimetres or centimetres to metres?)";
 /// No fabric stretches so far.
 const LARGEST_STRETCH: f64 = 10.0;
 
@@ -28,6 +29,7 @@ pub(super) fn check(folder: &Path, mesh: &Mesh, clips: &[Clip], frames: &[Frame]
     if size > LARGEST_SPECIMEN {
         return refuse("mesh.obj", "v".into(), format!("a specimen of {size} m across"));
     }
+    let far = are_far(frames.iter().filter_map(|frame| frame.positions.as_ref()));
     let centres: Vec<Point3<f64>> = clips.iter().map(|clip| centre(mesh, clip)).collect();
     for (index, frame) in frames.iter().enumerate() {
         let moved: Vec<_> = frame.poses.iter().zip(&centres).map(|(pose, centre)| pose * centre).collect();
@@ -36,11 +38,13 @@ pub(super) fn check(folder: &Path, mesh: &Mesh, clips: &[Clip], frames: &[Frame]
             return refuse("clips.csv", format!("frame {index}"), format!("clips {apart} m apart"));
         }
         if let Some(shape) = &frame.positions {
-            let (long, all) = long_edges(mesh, shape);
+            let stretches = stretches(mesh, shape, far);
+            let (long, all) = (stretches.iter().filter(|&&by| by > LARGEST_STRETCH).count(), stretches.len());
             if 2 * long > all {
                 let found = format!("{long} of {all} edges more than ten times as long as at rest");
                 let file = shapes::file_of(folder, index);
-                return Err(Error::input(&file, None, format!("frame {index}"), found, METRES));
+                let expected = in_metres(stretches);
+                return Err(Error::input(&file, None, format!("frame {index}"), found, expected));
             }
         }
     }
@@ -52,17 +56,29 @@ fn centre(mesh: &Mesh, clip: &Clip) -> Point3<f64> {
     Point3::from(sum / clip.vertices.len() as f64)
 }
 
-/// How many triangle sides are far too long, of all those observed. Single outliers are for the fit to flag. Shapes are
-/// judged in the single precision that they are written in: what was read is not refused once it was written.
-fn long_edges(mesh: &Mesh, shape: &[Vector3<f64>]) -> (usize, usize) {
+/// How many times as long as at rest each triangle side is that was observed. Single outliers are for the fit to flag.
+/// Shapes are judged in the precision that they are written in: what was read is not refused once it was written.
+///
+/// * `far` — that is double precision, else single
+fn stretches(mesh: &Mesh, shape: &[Vector3<f64>], far: bool) -> Vec<f64> {
     let sides = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let written = |vertex: usize| shape[vertex].map(|c| f64::from(c as f32));
-    sides.fold((0, 0), |(long, all), [from, to]| {
-        let length = (written(to) - written(from)).norm();
+    let written = |vertex: usize| shape[vertex].map(|c| if far { c } else { f64::from(c as f32) });
+    let stretch = |[from, to]: [usize; 2]| {
         let rest = (mesh.positions[to] - mesh.positions[from]).norm();
-        // An edge that was not observed has no length: NaN.
-        (long + usize::from(length > LARGEST_STRETCH * rest), all + usize::from(!length.is_nan()))
-    })
+        (written(to) - written(from)).norm() / rest
+    };
+    // An edge that was not observed has no length: NaN.
+    sides.map(stretch).filter(|stretch| !stretch.is_nan()).collect()
+}
+
+/// What to do about sides so many times too long.
+fn in_metres(mut stretches: Vec<f64>) -> &'static str {
+    stretches.sort_by(f64::total_cmp);
+    match stretches[stretches.len() / 2] {
+        500.0..2000.0 => "metres (convert millimetres to metres?)",
+        50.0..200.0 => "metres (convert centimetres to metres?)",
+        _ => "the shape of this specimen in metres, its vertices in the order of mesh.obj",
+    }
 }
 
 #[cfg(test)]
@@ -82,7 +98,10 @@ mod tests {
         for length in [0.8, 0.8 * (1.0 + 1e-9), 0.8 * (1.0 - 1e-9), 0.8000001] {
             let shape = [[0.0, 0.0, 0.0], [length, 0.0, 0.0], [0.0, 0.5 * length, 0.0]].map(Vector3::from);
             let written = shape.map(|place| place.map(|c| f64::from(c as f32)));
-            assert_eq!(long_edges(&mesh, &shape), long_edges(&mesh, &written), "{length}");
+            let long = |shape: &[Vector3<f64>]| {
+                stretches(&mesh, shape, false).iter().filter(|&&by| by > LARGEST_STRETCH).count()
+            };
+            assert_eq!(long(&shape), long(&written), "{length}");
         }
     }
 }

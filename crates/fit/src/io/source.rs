@@ -8,6 +8,9 @@ use std::path::Path;
 /// No measurement needs more, and everything is read at once.
 const LARGEST: u64 = 2 << 30;
 
+/// What the files of spreadsheet programs begin with: ZIP, and the compound files before it.
+const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xD0\xCF\x11\xE0"];
+
 /// Reads a regular, non-empty file of at most 2 GiB.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     let refuse = |found: &str, expected: &str| Err(Error::input(path, None, "file", found, expected));
@@ -48,6 +51,16 @@ pub(crate) fn decoded(path: &Path, mut bytes: Vec<u8>) -> Result<String> {
     let refuse = |offset: usize, found: String| {
         Err(Error::input(path, line_at(&bytes, offset), "text", found, "UTF-8 (save the file as UTF-8)"))
     };
+    if WORKBOOKS.iter().any(|magic| bytes.starts_with(magic)) {
+        let found = "a workbook (.xlsx, .ods or .xls) or another archive";
+        return Err(Error::input(
+            path,
+            None,
+            "text",
+            found,
+            "plain text (of a workbook save the sheet as CSV)",
+        ));
+    }
     if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
         return refuse(0, "UTF-16".into());
     }

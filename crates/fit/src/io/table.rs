@@ -3,7 +3,7 @@
 //! Spaces around a field and blank lines do not matter. Separators and decimal marks are never guessed.
 
 use super::number::number;
-use super::source::{read_text, shown};
+use super::source::{read_text, shortened, shown};
 use super::unit::{conversion, same_quantity};
 use crate::error::{Error, Result};
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -19,31 +19,62 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a table.
+    /// Reads a table whose first line is its header.
+    ///
+    /// Columns at the end that have neither a name nor a field are none: some programs end every row with a comma.
     ///
     /// # Errors
     /// Not a readable UTF-8 file; another separator than the comma; an open quote; a column without a name or twice
     /// the same; a row with more or fewer fields than the header.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = read_text(path)?;
-        check_separator(path, &text)?;
-        if let Some(line) = open_quote(&text) {
-            return Err(Error::input(
-                path,
-                line,
-                "quote",
-                "no closing quote at the end of the field",
-                "a quote (\") there",
-            ));
-        }
-        let mut records = records(path, &text)?.into_iter();
-        let Some((header_line, header)) = records.next() else {
-            return Err(Error::input(path, None, "header", "nothing", "the names of the columns"));
-        };
-        let table = Self { path: path.to_path_buf(), header_line, header, rows: records.collect() };
+        let table = Self::of(path, &read_text(path)?, 0)?;
         table.check_header()?;
         table.check_rows()?;
         Ok(table)
+    }
+
+    /// Reads a table of another program, in which some columns are asked for: its header is the first line that names
+    /// all of them; what stands above is passed over, and other columns may be named as they like.
+    ///
+    /// # Errors
+    /// As [`Table::read`]; no line that names all of the columns.
+    pub fn read_columns(path: &Path, columns: &[&str]) -> Result<Self> {
+        let text = read_text(path)?;
+        let table = Self::of(path, &text, header_place(&text, columns))?;
+        columns.iter().try_for_each(|column| table.place(column).map(|_| ()))?;
+        table.check_rows()?;
+        Ok(table)
+    }
+
+    /// The table below a line, from 0, of a text.
+    fn of(path: &Path, text: &str, header: usize) -> Result<Self> {
+        let start: usize = text.split_inclusive('\n').take(header).map(str::len).sum();
+        let in_file = |line: usize| line + header;
+        let text = &text[start..];
+        check_separator(path, text, header)?;
+        if let Some(line) = open_quote(text) {
+            let (found, expected) = ("no closing quote at the end of the field", "a quote (\") there");
+            return Err(Error::input(path, in_file(line), "quote", found, expected));
+        }
+        let records = records(path, text)?.into_iter().map(|(line, record)| (in_file(line), record));
+        let mut records = records.collect::<Vec<_>>().into_iter();
+        let Some((header_line, header)) = records.next() else {
+            return Err(Error::input(path, None, "header", "nothing", "the names of the columns"));
+        };
+        let mut table = Self { path: path.to_path_buf(), header_line, header, rows: records.collect() };
+        table.drop_nothing();
+        Ok(table)
+    }
+
+    /// Drops columns at the end that have neither a name nor a field.
+    fn drop_nothing(&mut self) {
+        let named = (0..self.header.len()).rfind(|&column| !self.header[column].is_empty());
+        let named = named.map_or(0, |last| last + 1);
+        let is_empty = |(_, row): &(usize, StringRecord)| row.iter().skip(named).all(str::is_empty);
+        if self.rows.iter().all(is_empty) {
+            self.header.truncate(named);
+            self.rows.iter_mut().for_each(|(_, row)| row.truncate(named.min(row.len())));
+        }
     }
 
     /// Finds columns by their names: where the required ones are, and the optional ones that exist.
@@ -57,11 +88,17 @@ impl Table {
     ) -> Result<([usize; R], [Option<usize>; O])> {
         let known = || required.iter().chain(&optional).copied();
         let refuse = |found: &str, expected: String| Err(self.bad_header("header", shown(found), expected));
-        if let Some(found) = self.header.iter().find(|&found| !known().any(|name| name == found)) {
-            let wanted = known().find(|name| self.column(name).is_none() && same_quantity(found, name));
-            return match wanted {
-                Some(name) => refuse(found, format!("{name} ({})", conversion(found, name))),
-                None => refuse(found, format!("only the columns {}", known().collect::<Vec<_>>().join(", "))),
+        let strange = || self.header.iter().filter(|&found| !known().any(|name| name == found));
+        if let Some(first) = strange().next() {
+            let meant =
+                |found| known().find(|name| self.column(name).is_none() && same_quantity(found, name));
+            let (found, wanted): (Vec<_>, Vec<_>) = strange()
+                .filter_map(|found| Some((found, meant(found)?)))
+                .map(|(found, name)| (found, format!("{name} ({})", conversion(found, name))))
+                .unzip();
+            return match wanted.is_empty() {
+                false => refuse(&found.join(", "), wanted.join(", ")),
+                true => refuse(first, format!("only the columns {}", known().collect::<Vec<_>>().join(", "))),
             };
         }
         let mut places = [0; R];
@@ -74,9 +111,34 @@ impl Table {
         Ok((places, optional.map(|name| self.column(name))))
     }
 
+    /// True if a column is of the same quantity as one of some name, in whatever unit.
+    pub fn has_quantity(&self, name: &str) -> bool {
+        self.header.iter().any(|found| same_quantity(found, name))
+    }
+
     /// Where a column is, if it exists.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|found| found == name)
+    }
+
+    /// Where a column is that there must be.
+    ///
+    /// # Errors
+    /// It is missing, or there twice.
+    pub fn place(&self, name: &str) -> Result<usize> {
+        let mut places = (0..self.header.len()).filter(|&column| &self.header[column] == name);
+        match (places.next(), places.next()) {
+            (Some(place), None) => Ok(place),
+            (Some(_), Some(_)) => {
+                let found = format!("{} twice", shown(name));
+                Err(self.bad_header("header", found, "every column that is asked for once"))
+            }
+            (None, _) => {
+                let names = shortened(&self.header.iter().collect::<Vec<_>>().join(", "), 300);
+                let found = format!("no column \"{}\"", shown(name));
+                Err(self.bad_header("header", found, format!("one of {names}, exactly as it stands there")))
+            }
+        }
     }
 
     /// A column's name.
@@ -154,25 +216,72 @@ impl Table {
 
     fn check_rows(&self) -> Result<()> {
         let expected = self.header.len();
-        match self.rows.iter().find(|(_, record)| record.len() != expected) {
-            Some((line, record)) => {
-                let hint = if record.len() > expected { " (decimal commas?)" } else { "" };
-                let found = format!("{} fields{hint}", record.len());
-                Err(Error::input(
-                    &self.path,
-                    *line,
-                    "row",
-                    found,
-                    format!("{expected} fields, as in the header"),
-                ))
+        let Some((line, record)) = self.rows.iter().find(|(_, record)| record.len() != expected) else {
+            return Ok(());
+        };
+        let alike = self.rows.iter().all(|(_, other)| other.len() == record.len());
+        let cause = match record.len() {
+            fields if has_decimal_commas(record, expected) => format!("{fields} fields (decimal commas?)"),
+            fields if alike && self.rows.len() > 1 => {
+                format!("{fields} fields in every row (another line as the header?)")
             }
-            None => Ok(()),
-        }
+            fields => format!("{fields} fields"),
+        };
+        let expected = format!("{expected} fields, as in the header in line {}", self.header_line);
+        Err(Error::input(&self.path, *line, "row", cause, expected))
     }
 }
 
+/// True for a row whose commas may be decimal ones: what is too many are digits alone, and no number has a point.
+fn has_decimal_commas(record: &StringRecord, expected: usize) -> bool {
+    let is_digits = |field: &&str| !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_digit());
+    let has_point = |field: &str| field.contains('.') && field.parse::<f64>().is_ok();
+    let fractions = record.iter().skip(1).filter(is_digits).count();
+    record.len() > expected && fractions >= record.len() - expected && !record.iter().any(has_point)
+}
+
+/// How many lines of a text stand above the header: the first line that names all of the columns, or else the last of
+/// those that name most.
+fn header_place(text: &str, columns: &[&str]) -> usize {
+    let named = |line: &str| {
+        let of = |separator: &u8| {
+            let mut reader = ReaderBuilder::new();
+            reader.has_headers(false).trim(Trim::All).delimiter(*separator);
+            let record = reader.from_reader(line.as_bytes()).into_records().next();
+            let record = record.and_then(|record| record.ok()).unwrap_or_default();
+            columns.iter().filter(|column| record.iter().any(|name| name == **column)).count()
+        };
+        b",;\t".iter().map(of).max().unwrap_or_default()
+    };
+    let mut best = (0, 0);
+    for (place, line) in text.lines().enumerate() {
+        // A name may be quoted, but stands in the line.
+        let may_be = columns.iter().filter(|column| line.contains(**column)).count() >= best.1.max(1);
+        let count = if may_be { named(line) } else { 0 };
+        if count > 0 && count >= best.1 {
+            best = (place, count);
+        }
+        if count == columns.len() {
+            break;
+        }
+    }
+    best.0
+}
+
+/// How many lines stand above the header of another program's table: see [`Table::read_columns`].
+///
+/// # Errors
+/// Not a readable UTF-8 file.
+pub fn lines_above_header(path: &Path, columns: &[&str]) -> Result<usize> {
+    let text = read_text(path)?;
+    let above = text.lines().take(header_place(&text, columns));
+    Ok(above.filter(|line| !line.trim().is_empty()).count())
+}
+
 /// A header of semicolons or tabs and no comma: quotes would be read wrong if it went on.
-fn check_separator(path: &Path, text: &str) -> Result<()> {
+///
+/// * `above` — lines of the file above the text
+fn check_separator(path: &Path, text: &str, above: usize) -> Result<()> {
     let Some((line, header)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
         return Ok(());
     };
@@ -183,7 +292,7 @@ fn check_separator(path: &Path, text: &str) -> Result<()> {
             let found = format!("{shown} between the columns");
             let expected =
                 "commas between the columns and points in the numbers (export as comma-separated values)";
-            return Err(Error::input(path, line + 1, "header", found, expected));
+            return Err(Error::input(path, above + line + 1, "header", found, expected));
         }
     }
     Ok(())
@@ -227,4 +336,75 @@ fn open_quote(text: &str) -> Option<usize> {
         field_starts = matches!(character, ',' | '\n');
     }
     opened
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A table of another program, of which force and travel are asked for.
+    fn read(text: &str) -> Result<Table> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        std::fs::write(&path, text).unwrap();
+        Table::read_columns(&path, &["travel", "force"])
+    }
+
+    fn message(text: &str) -> String {
+        let message = read(text).unwrap_err().to_string();
+        message[message.find("t.csv").unwrap()..].into()
+    }
+
+    #[test]
+    fn lines_above_the_header_are_passed_over_and_counted_in_messages() {
+        let above = "{\"specimen\": 1, \"rate\": 0.5}\n***\n*** travel; force\n\n";
+        let table = read(&format!("{above}time,travel,force\n0,1,2\n3,4,5\n")).unwrap();
+        assert_eq!((table.rows(), table.line(1)), (2, 7));
+        assert_eq!(table.number(1, table.place("force").unwrap()).unwrap(), 5.0);
+        assert!(
+            message(&format!("{above}time;travel;force\n0;1;2\n"))
+                .starts_with("t.csv:5 header: found semicolons")
+        );
+        let misspelt = message(&format!("{above}time,travel,load\n0,1,2\n"));
+        let expected = "t.csv:5 header: found no column \"force\", expected one of time, travel, load, exactly as it stands there";
+        assert_eq!(misspelt, expected);
+        let ragged = message(&format!("{above}time,travel,force\n0,1,2\n3,4\n"));
+        assert_eq!(ragged, "t.csv:7 row: found 2 fields, expected 3 fields, as in the header in line 5");
+        // Nothing is passed over of a file whose first line is the header.
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        for (text, lines) in [("travel,force\ntravel,force\n", 0), (&format!("{above}force,travel\n"), 3)] {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(lines_above_header(&path, &["travel", "force"]).unwrap(), lines);
+        }
+    }
+
+    #[test]
+    fn a_comma_at_the_end_of_every_row_is_no_column() {
+        for text in
+            ["travel,force\n1,2,\n3,4,\n", "travel,force,\n1,2,\n3,4,\n", "travel,force,,\n1,2\n3,4,,\n"]
+        {
+            let table = read(text).unwrap();
+            assert_eq!((table.rows(), table.number(1, 1).unwrap()), (2, 4.0), "{text}");
+        }
+        let one = message("travel,force\n1,2,\n3,4,9.5\n");
+        let expected =
+            "t.csv:2 row: found 3 fields (decimal commas?), expected 2 fields, as in the header in line 1";
+        assert_eq!(one, expected);
+    }
+
+    #[test]
+    fn only_columns_that_are_asked_for_must_be_there_once() {
+        let table = read("time,travel,time,,force\n0,1,0,,2\n").unwrap();
+        assert_eq!(table.number(0, 4).unwrap(), 2.0);
+        let twice = message("travel,force,force\n0,1,2\n");
+        assert_eq!(twice, "t.csv:1 header: found force twice, expected every column that is asked for once");
+    }
+
+    #[test]
+    fn decimal_commas_are_suspected_where_they_can_be() {
+        let suspected = |row: &str| message(&format!("travel,force\n{row}\n")).contains("decimal commas?");
+        assert!(suspected("0,5,1,25") && suspected("3,1,25") && suspected("-0,5,1,25e1,0"));
+        assert!(!suspected("0.5,1.25,3") && !suspected("7"));
+    }
 }

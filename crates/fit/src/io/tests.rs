@@ -238,3 +238,51 @@ fn double_precision_arrays_are_read() {
     let expected = vec![Vector3::new(0.1, 0.2, 0.3), Vector3::new(0.4, 0.5, 0.6)];
     assert_eq!(npy::read(&path, 2).unwrap(), [expected]);
 }
+
+#[test]
+fn a_line_of_an_obj_file_goes_on_after_a_backslash() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("set");
+    write_set(&place, &set()).unwrap();
+    let path = place.join("stretch-weft/mesh.obj");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("f 1/1 2/2 3/3", "# a comment goes on nowhere \\\nf 1/1 \\\n2/2\\\n3/3"))
+        .unwrap();
+    same(&read_set(&place).unwrap(), &set());
+}
+
+#[test]
+fn nan_in_a_text_of_ply_is_a_vertex_that_was_not_observed() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("set");
+    write_set(&place, &set()).unwrap();
+    let bend = place.join("bend");
+    fs::remove_file(bend.join("positions.npy")).unwrap();
+    fs::create_dir(bend.join("frames")).unwrap();
+    let header = "ply\nformat ascii 1.0\nelement camera 1\nproperty float focus\nelement vertex 4\n\
+                  property list uchar int near\nproperty float x\nproperty float y\nproperty uchar red\n\
+                  property float z\nend_header\n.5\n";
+    for (index, frame) in set().sequences[0].frames.iter().enumerate() {
+        let row = |p: &Vector3<f64>| match p.x.is_nan() {
+            true => "0 nan -nan 9 NaN\n".to_string(),
+            false => format!("2 3 4 {} {} 255 {}\n", p.x, p.y, p.z),
+        };
+        let rows: String = frame.positions.iter().flatten().map(row).collect();
+        fs::write(bend.join(format!("frames/{index}.ply")), format!("{header}{rows}")).unwrap();
+    }
+    same(&read_set(&place).unwrap(), &set());
+}
+
+#[test]
+fn a_set_far_away_is_written_in_double_precision() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("set");
+    let by = Vector3::new(5e6, -3e6, 400.0);
+    let mut far = MeasurementSet { sequences: vec![bend()], ..set() };
+    far.sequences[0].mesh.positions.iter_mut().for_each(|position| *position += by);
+    for frame in &mut far.sequences[0].frames {
+        frame.positions.iter_mut().flatten().for_each(|position| *position += by);
+    }
+    write_set(&place, &far).unwrap();
+    same(&read_set(&place).unwrap(), &far);
+}

@@ -34,12 +34,23 @@ const UNITS: [(&str, &str); 30] = [
     ("_percent", "percent"),
 ];
 
-/// Splits `tx_mm` into the quantity `tx` and the unit "millimetres".
-fn split(name: &str) -> (&str, Option<&'static str>) {
+/// Splits `tx_mm` into the quantity `tx` and the unit "millimetres", `moment [gf·cm/cm]` into `moment` and what stands in
+/// brackets.
+fn split(name: &str) -> (&str, Option<&str>) {
+    if let Some((quantity, unit)) = in_brackets(name) {
+        return (quantity, Some(unit));
+    }
     UNITS
         .iter()
         .find_map(|&(suffix, unit)| Some((name.strip_suffix(suffix)?, Some(unit))))
         .unwrap_or((name, None))
+}
+
+/// A quantity and the unit that stands in brackets behind it.
+fn in_brackets(name: &str) -> Option<(&str, &str)> {
+    let within = |open: char, close: char| name.strip_suffix(close)?.rsplit_once(open);
+    let (quantity, unit) = within('[', ']').or_else(|| within('(', ')'))?;
+    Some((quantity.trim(), unit.trim()))
 }
 
 /// True if the names differ in their units only.
@@ -49,8 +60,11 @@ pub(super) fn same_quantity(found: &str, expected: &str) -> bool {
 
 /// What to do about a name in the wrong unit, or without one.
 pub(super) fn conversion(found: &str, expected: &str) -> String {
-    match (split(&found.to_lowercase()).1, split(expected).1) {
-        (Some(from), Some(to)) if from != to => format!("convert {from} to {to}"),
+    // Moments of bending are per width: N·m/m.
+    let per_width = if expected.starts_with("moment") { ", newton metres per metre of width" } else { "" };
+    let found = found.to_lowercase();
+    match (split(&found).1, split(expected).1) {
+        (Some(from), Some(to)) if from != to => format!("convert {from} to {to}{per_width}"),
         (None, Some(to)) => format!("the values in {to}, the unit in the name"),
         _ => "the name exactly so".into(),
     }

@@ -1,23 +1,32 @@
 //! The tables of a result folder.
 
+use crate::curve_file::{ENGINEERING, Kind};
 use crate::incremental::FitReport;
 use crate::report::{Sample, SequenceReport, StageReport};
 use std::fmt::Write;
 
-/// 201 rows; the band's columns are absent where the data do not see all of the curve.
+/// 201 rows; the band's cells are empty where the data do not see the curve, its columns absent where they see none of it. Beside Green strain and its
+/// stress stand engineering strain and nominal stress.
 pub(super) fn curve_table(stage: &StageReport) -> String {
     let curve = &stage.curve;
-    let banded = curve.samples.iter().all(|sample| sample.band.is_some());
-    let (columns, band) = if stage.components[0].is_bending() {
-        ("curvature_per_m,rigidity_n_m,moment_n", ",moment_low_n,moment_high_n")
-    } else {
-        ("strain,stiffness_n_per_m,stress_n_per_m", ",stress_low_n_per_m,stress_high_n_per_m")
-    };
-    let mut table = format!("{columns}{}\n", if banded { band } else { "" });
-    for Sample { strain, stiffness, stress, band } in &curve.samples {
+    let banded = curve.samples.iter().any(|sample| sample.band.is_some());
+    let kind = Kind::of(stage.components[0], stage.model);
+    let beside = |sample: &Sample| kind.engineering(sample.strain, sample.stress);
+    let engineering = curve.samples.iter().all(|sample| beside(sample).is_some());
+    let columns = kind.columns();
+    let mut table = columns[..if banded { 5 } else { 3 }].join(",");
+    if engineering {
+        table = [&table, ENGINEERING[0], ENGINEERING[1]].join(",");
+    }
+    table.push('\n');
+    for sample @ Sample { strain, stiffness, stress, band } in &curve.samples {
         let _ = write!(table, "{strain},{stiffness},{stress}");
-        if let Some([low, high]) = band.filter(|_| banded) {
+        if banded {
+            let [low, high] = [0, 1].map(|side| cell(band.map(|band| band[side])));
             let _ = write!(table, ",{low},{high}");
+        }
+        if let Some([strain, stress]) = beside(sample).filter(|_| engineering) {
+            let _ = write!(table, ",{strain},{stress}");
         }
         table.push('\n');
     }

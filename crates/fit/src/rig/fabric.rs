@@ -205,7 +205,11 @@ impl KnownFabric {
             ("sample_scatter", self.sample_scatter, 1.0),
         ] {
             if !(value > 0.0 && value <= most) {
-                let metres = if key.ends_with("_m") { " m (millimetres?)" } else { "" };
+                let metres = match key.ends_with("_m") {
+                    true if value > most => " m (millimetres or centimetres?)",
+                    true => " m",
+                    false => "",
+                };
                 let expected = format!("above 0 and at most {most}{metres}");
                 return Err(file.invalid(key, value.to_string(), expected));
             }

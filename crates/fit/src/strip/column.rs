@@ -73,7 +73,7 @@ pub(super) struct Series {
 
 impl Series {
     pub(super) fn find(table: &Table, column: &Column, quantity: Quantity) -> Result<Self> {
-        let place = place(table, &column.name)?;
+        let place = table.place(&column.name)?;
         let name = &column.name;
         let list: Vec<_> =
             UNITS.iter().filter(|unit| unit.quantity == quantity).map(|unit| unit.name).collect();
@@ -120,17 +120,6 @@ impl Series {
         let found = shown(table.text(row, self.place));
         Err(table.invalid(row, table.name(self.place), found, "a number below 1.8e308 in SI units"))
     }
-}
-
-/// Where a column is.
-pub(super) fn place(table: &Table, name: &str) -> Result<usize> {
-    table.column(name).ok_or_else(|| {
-        table.bad_header(
-            "header",
-            format!("no column \"{}\"", shown(name)),
-            "a column's name, exactly as it stands there",
-        )
-    })
 }
 
 fn named(text: &str) -> Option<&'static Unit> {

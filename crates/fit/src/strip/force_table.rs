@@ -18,6 +18,7 @@ use super::settings::Extension;
 use super::{LARGEST, SEPARATION, chosen_rows};
 use crate::curve_file::{CurveFile, Kind};
 use crate::error::{Error, Result};
+use crate::io::check_length;
 use crate::io::table::Table;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -63,7 +64,7 @@ pub struct ForceTable {
 /// half a gauge length apart or more than ten; strains that do not ascend; a force at zero strain.
 pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
     test.validate()?;
-    let table = Table::read(path)?;
+    let table = Table::read_columns(path, &test.columns())?;
     let (column, quantity) = match &test.extension {
         Extension::Separation(column) | Extension::Displacement(column) => (column, Quantity::Length),
         Extension::Strain(column) => (column, Quantity::Strain),
@@ -103,18 +104,27 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
         stresses.insert(0, 0.0);
         lines.insert(0, lines[0]);
     }
-    CurveFile::new(Kind::Membrane, strains, stresses, path, lines)
+    let kind = match test.measure {
+        Measure::Green => Kind::Green,
+        Measure::Engineering => Kind::Engineering,
+        Measure::Shear { .. } => Kind::Shear,
+    };
+    CurveFile::new(kind, strains, stresses, path, lines)
 }
 
 impl ForceTable {
+    /// The names of the columns that the table must have.
+    pub fn columns(&self) -> [&str; 2] {
+        [&self.extension.column().name, &self.force.name]
+    }
+
     fn validate(&self) -> Result<()> {
         let refuse = |field, found: String, expected: &str| {
             Err(Error::Setting { field, found, expected: expected.into() })
         };
         for (field, value) in [("width", Some(self.width)), ("gauge", self.gauge)] {
-            if let Some(value) = value.filter(|value| !(*value > 0.0 && *value <= LARGEST)) {
-                return refuse(field, value.to_string(), "a length above 0 and at most 10 m (millimetres?)");
-            }
+            let Some(value) = value else { continue };
+            check_length(value, LARGEST).or_else(|expected| refuse(field, value.to_string(), &expected))?;
         }
         if let Measure::Shear { tension } = self.measure
             && !(tension >= 0.0 && tension.is_finite())
@@ -174,7 +184,15 @@ mod tests {
         let separation = test(Extension::Separation("apart:m".into()), Measure::Green);
         let found = read("apart,load\n0.22,10\n0.24,30\n", &separation).unwrap();
         assert!(near(&found.strains, &[0.0, 0.105, 0.22]) && found.stresses[0] == 0.0);
-        assert_eq!(found.to_csv().lines().next(), Some("strain,stress_n_per_m"));
+        assert_eq!(
+            found.to_csv().lines().next(),
+            Some("green_strain,pk2_stress_n_per_m,engineering_strain,nominal_stress_n_per_m")
+        );
+        // What stands beside is what the clamps and the load cell said.
+        let last =
+            found.to_csv().lines().last().map(|row| row.split(',').map(|f| f.parse().unwrap()).collect());
+        let last: Vec<f64> = last.unwrap();
+        assert!(near(&last[2..], &[0.2, 600.0]), "{last:?}");
         let strain =
             ForceTable { gauge: None, ..test(Extension::Strain("e:%".into()), Measure::Engineering) };
         let some = ForceTable { rows: Some(1..=2), ..strain };
@@ -185,7 +203,7 @@ mod tests {
     fn what_is_wrong_is_named_by_its_line() {
         let green = test(Extension::Displacement("travel_mm".into()), Measure::Green);
         for (rows, words) in [
-            ("0,0\n20,10\n10,5", ":4 strain: found"),
+            ("0,0\n20,10\n10,5", ":4 green_strain: found"),
             ("0,0\n5000,10", ":3 travel_mm: found 26 times the gauge length"),
             ("0,0\n20,x", ":3 load: found x"),
             ("0,0\n20,1e308", ":3 load: found 100000"),

@@ -3,6 +3,7 @@
 use super::column::Column;
 use crate::error::{Error, Result};
 use crate::frame::Kind;
+use crate::io::check_length;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Rotation2, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_4;
@@ -73,7 +74,22 @@ pub struct StripTest {
     pub force_noise: Option<f64>,
 }
 
+impl Extension {
+    /// The column that tells it.
+    pub fn column(&self) -> &Column {
+        match self {
+            Self::Separation(column) | Self::Displacement(column) | Self::Strain(column) => column,
+        }
+    }
+}
+
 impl StripTest {
+    /// The names of the columns that the table must have.
+    pub fn columns(&self) -> Vec<&str> {
+        let asked = [&self.extension.column().name, &self.force.name];
+        asked.into_iter().chain(&self.branch_column).map(String::as_str).collect()
+    }
+
     /// A test with the defaults above.
     pub fn new(direction: Direction, gauge: f64, width: f64, extension: Extension, force: Column) -> Self {
         Self {
@@ -103,9 +119,7 @@ impl StripTest {
             return refuse("name", "nothing".into(), "a name for the sequence");
         }
         for (field, value) in [("gauge", self.gauge), ("width", self.width)] {
-            if !(value > 0.0 && value <= LARGEST) {
-                return refuse(field, value.to_string(), "a length above 0 and at most 10 m (millimetres?)");
-            }
+            check_length(value, LARGEST).or_else(|expected| refuse(field, value.to_string(), &expected))?;
         }
         if self.every == 0 {
             return refuse("every", "0".into(), "1 for every row, 2 for every second, …");

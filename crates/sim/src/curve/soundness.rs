@@ -148,7 +148,9 @@ impl Finding {
             Kind::Magnitude if self.value < self.limit => {
                 "far too soft for a cloth, probably another unit: it hangs like nothing, or stretches without end"
             }
-            Kind::Magnitude => "far too stiff for a cloth, probably another unit: time steps shrink with it",
+            Kind::Magnitude => {
+                "far too stiff for a cloth, probably another unit (pascals?): time steps shrink with it"
+            }
             Kind::Unvisited => "nothing was measured there: the curve is a guess",
         }
     }
@@ -158,6 +160,8 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.strains;
         match high {
+            // It is of the curve as a whole.
+            _ if self.kind == Kind::Magnitude => write!(f, "{}", self.kind)?,
             f64::INFINITY => write!(f, "{} from {low:.4} on", self.kind)?,
             _ => write!(f, "{} from {low:.4} to {high:.4}", self.kind)?,
         }

@@ -1,6 +1,6 @@
 //! `fit-cloth import strip`: a tensile machine's table into a sequence.
 
-use crate::command::{Outcome, tell};
+use crate::command::{Outcome, note_lines_above, tell};
 use crate::failure::Failure;
 use crate::options::Telling;
 use crate::output::whole;
@@ -127,6 +127,7 @@ pub enum StripDirection {
 pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let test = strip_test(options);
     let sequence = read_strip(&options.file, &test)?;
+    note_lines_above(telling, &options.file, &test.columns())?;
     let place = options.set.join(&sequence.name);
     refuse_replacing(&options.file, &place)?;
     let sample = Sample {

@@ -1,7 +1,7 @@
 //! `fit-cloth import table`: force over elongation into stress over strain.
 
 use super::strip::{ExtensionOptions, column, rows};
-use crate::command::{Outcome, tell, warn};
+use crate::command::{Outcome, note_lines_above, tell, warn};
 use crate::failure::Failure;
 use crate::options::Telling;
 use crate::subject::write;
@@ -94,6 +94,7 @@ pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) ->
         measure,
     };
     let file = read_force_table(&options.file, &test)?;
+    note_lines_above(telling, &options.file, &test.columns())?;
     let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
     write("--out", &options.out, &options.file, &file.to_csv())?;
     let findings = check(&curve, &context(model, component, None));

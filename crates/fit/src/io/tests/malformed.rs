@@ -89,12 +89,12 @@ fn fabric_file() {
             (
                 "width_m = 0.1",
                 "width_m = -1",
-                ":2 width_m: found -1, expected a length above 0 and at most 10 m (millimetres?)",
+                ":2 width_m: found -1, expected a length above 0 and at most 10 m",
             ),
             (
                 "width_m = 0.1",
                 "width_m = nan",
-                ":2 width_m: found NaN, expected a length above 0 and at most 10 m (millimetres?)",
+                ":2 width_m: found NaN, expected a length above 0 and at most 10 m",
             ),
             ("width_m = 0.1", "width_m = \"wide\"", ":2 width_m: found string \"wide\", expected a number"),
             (
@@ -255,6 +255,16 @@ fn mesh_file() {
                 ":10 mesh: found edge 0-1: 0.1 m between rest positions, 100 m between material coordinates; they must agree within 1 % (millimetres?) (counted from 0), expected a sheet of cloth in metres",
             ),
             (
+                "vt 0.1 0\n",
+                "vt 10 0\n",
+                ":10 mesh: found edge 0-1: 0.1 m between rest positions, 10 m between material coordinates; they must agree within 1 % (centimetres?) (counted from 0), expected a sheet of cloth in metres",
+            ),
+            (
+                "vt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n",
+                "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n",
+                ":10 mesh: found edge 0-1: 0.1 m between rest positions, 1 m between material coordinates; they must agree within 1 % (counted from 0), expected vt in metres; these, from 0 to 1, are texture coordinates: multiply u by the sample's width and v by its height",
+            ),
+            (
                 "f 1/1 2/2 3/3",
                 "f 0/1 2/2 3/3",
                 ":10 f v: found 0, expected an index from 1, or from -1 backwards",
@@ -325,9 +335,17 @@ fn clip_table() {
                 ":1 header: found x, expected only the columns frame, clip, tx_m, ty_m, tz_m, qw, qx, qy, qz",
             ),
             ("tx_m", "qw", ":1 header: found qw twice, expected every column once"),
-            ("tx_m,", "", ":2 row: found 9 fields (decimal commas?), expected 8 fields, as in the header"),
+            (
+                "tx_m,",
+                "",
+                ":2 row: found 9 fields in every row (another line as the header?), expected 8 fields, as in the header in line 1",
+            ),
             ("tx_m,", ",", ":1 header: found no name for column 3, expected a name for every column"),
-            ("qz\n", "qz,force_n\n", ":2 row: found 9 fields, expected 10 fields, as in the header"),
+            (
+                "qz\n",
+                "qz,force_n\n",
+                ":2 row: found 9 fields in every row (another line as the header?), expected 10 fields, as in the header in line 1",
+            ),
             (
                 "frame,clip,tx_m,ty_m,tz_m,qw,qx,qy,qz\n",
                 "frame;clip;tx_m;ty_m;tz_m;qw;qx;qy;qz\n",
@@ -355,9 +373,9 @@ fn clip_table() {
             (
                 "0,low,0,",
                 "0,low,0,5,",
-                ":2 row: found 10 fields (decimal commas?), expected 9 fields, as in the header",
+                ":2 row: found 10 fields, expected 9 fields, as in the header in line 1",
             ),
-            ("0,low,0,", "0,low,0;", ":2 row: found 8 fields, expected 9 fields, as in the header"),
+            ("0,low,0,", "0,low,0;", ":2 row: found 8 fields, expected 9 fields, as in the header in line 1"),
             (
                 "0,low,0,",
                 "0,low,\"0,",
@@ -379,14 +397,18 @@ fn clip_table() {
             (
                 "0,low,0,",
                 "0,low,50,",
-                " frame 0: found clips 50.0500999000002 m apart, expected metres (convert millimetres to metres?)",
+                " frame 0: found clips 50.0500999000002 m apart, expected metres (convert millimetres or centimetres to metres?)",
             ),
             (
                 ",1,0,0,0\n",
                 ",1.1,0,0,0\n",
                 ":2 qw,qx,qy,qz: found a quaternion of length 1.1, expected unit length: qw first, then qx, qy, qz",
             ),
-            (",1,0,0,0\n", ",1,0,0\n", ":2 row: found 8 fields, expected 9 fields, as in the header"),
+            (
+                ",1,0,0,0\n",
+                ",1,0,0\n",
+                ":2 row: found 8 fields, expected 9 fields, as in the header in line 1",
+            ),
         ],
     );
 }
@@ -426,7 +448,15 @@ fn other_tables() {
 fn bytes_that_are_no_text() {
     let utf16 = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>();
     let with_mark = [vec![0xFF, 0xFE], utf16("frame")].concat();
-    let cases: [(&[u8], &str); 5] = [
+    let cases: [(&[u8], &str); 7] = [
+        (
+            b"PK\x03\x04\x14\0",
+            "corners/clips.csv text: found a workbook (.xlsx, .ods or .xls) or another archive, expected plain text (of a workbook save the sheet as CSV)",
+        ),
+        (
+            b"\xD0\xCF\x11\xE0\xA1",
+            "corners/clips.csv text: found a workbook (.xlsx, .ods or .xls) or another archive, expected plain text (of a workbook save the sheet as CSV)",
+        ),
         (&with_mark, "corners/clips.csv:1 text: found UTF-16, expected UTF-8 (save the file as UTF-8)"),
         (
             &utf16("frame\nclip"),
@@ -467,6 +497,14 @@ fn shapes() {
     let millimetres = |place: &Path| {
         let shapes = [0.0, 1.0].map(|offset| shape(offset).iter().map(|p| p * 1000.0).collect::<Vec<_>>());
         fs::write(array(place), npy::written(&[Some(&shapes[0]), Some(&shapes[1])], 4)).unwrap();
+    };
+    // Shapes of float32 a thousand kilometres away.
+    let far = |place: &Path| {
+        let near = npy::written(&[Some(&shape(0.0)), Some(&shape(1.0))], 4);
+        let (header, data) = near.split_at(128);
+        let far = |bytes: &[u8]| (f32::from_le_bytes(bytes.try_into().unwrap()) + 1e6).to_le_bytes();
+        let data: Vec<u8> = data.chunks_exact(4).flat_map(far).collect();
+        fs::write(array(place), [header, &data].concat()).unwrap();
     };
     let unseen = |place: &Path| fs::write(array(place), npy::written(&[Some(&shape(0.0)), None], 4)).unwrap();
     let files = |names: &'static [&'static str]| {
@@ -538,6 +576,10 @@ fn shapes() {
             "bend/positions.npy frame 0: found 4 of 4 edges more than ten times as long as at rest, expected metres (convert millimetres to metres?)",
         ),
         (
+            &far,
+            "bend/positions.npy data: found float32 coordinates of 1000001 m, expected float64 so far away, or an origin nearby (or millimetres? then divide by 1000)",
+        ),
+        (
             &unseen,
             "bend/positions.npy file: found no observed vertex in frame 1, expected one at least in every frame",
         ),
@@ -565,8 +607,32 @@ fn shapes() {
         ),
         (&three, "corners/frames/0000.obj vertices: found 3, expected 4, as in mesh.obj"),
         (
-            &ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nend_header\n0\n0\n0\nnan\n"),
-            "corners/frames/0.ply:9 PLY: found Couldn't read element line., expected a PLY file with x, y and z of every vertex",
+            &ply(
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  end_header\n0 0 0\n0 1,5 0\n",
+            ),
+            "corners/frames/0.ply:9 y: found 1,5, expected a number with a decimal point, not a comma",
+        ),
+        (
+            &ply(
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  end_header\n0 0 0\n0 1\n",
+            ),
+            "corners/frames/0.ply:9 z: found nothing, expected a number",
+        ),
+        (
+            &ply(
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  end_header\n0 0 0 7\n",
+            ),
+            "corners/frames/0.ply:8 row: found 7, expected nothing after the last property",
+        ),
+        (
+            &ply(
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  end_header\n0 0 0\n",
+            ),
+            "corners/frames/0.ply element vertex: found 1 rows, expected 4",
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nend_header\n0\n0\n0\n0\n"),
@@ -624,6 +690,20 @@ fn files_and_folders() {
     };
     let cases: &[(Change<'_>, &str)] = &[
         (&remove("fabric.toml"), "fabric.toml file: found nothing, expected a file"),
+        (
+            &|place| {
+                fs::create_dir(place.join("inner")).unwrap();
+                fs::rename(place.join("fabric.toml"), place.join("inner/fabric.toml")).unwrap();
+            },
+            "set folder: found a folder of sets: inner, expected one of them",
+        ),
+        (
+            &|place| {
+                remove("fabric.toml")(place);
+                fs::rename(place.join("corners/test.toml"), place.join("test.toml")).unwrap();
+            },
+            "set folder: found a sequence of a set, expected the set, which is the folder above it",
+        ),
         (&remove("corners/test.toml"), "corners/test.toml file: found nothing, expected a file"),
         (&remove("corners/mesh.obj"), "corners/mesh.obj file: found nothing, expected a file"),
         (&remove("corners/clips.csv"), "corners/clips.csv file: found nothing, expected a file"),

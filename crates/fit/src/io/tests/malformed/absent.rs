@@ -16,7 +16,7 @@ fn names_and_columns() {
             (
                 "thickness_m = ",
                 "thickness_m = 1",
-                ":5 thickness_m: found 10.0000001, expected a thickness above 0 and at most 0.1 m (millimetres?)",
+                ":5 thickness_m: found 10.0000001, expected a length above 0 and at most 0.1 m (millimetres?)",
             ),
         ],
     );
@@ -64,7 +64,7 @@ fn meshes_that_are_no_sheet() {
         ),
         (
             &large,
-            "corners/mesh.obj v: found a specimen of 141.4213562373095 m across, expected metres (convert millimetres to metres?)",
+            "corners/mesh.obj v: found a specimen of 141.4213562373095 m across, expected metres (convert millimetres or centimetres to metres?)",
         ),
         (
             &text("corners/mesh.obj", "# empty\n"),
