@@ -4,6 +4,7 @@
 
 mod bending;
 mod closed_form;
+mod contradiction;
 mod coverage;
 mod droop;
 mod outliers;
