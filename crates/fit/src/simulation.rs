@@ -233,23 +233,23 @@ impl<'a> Simulation<'a> {
         forces
     }
 
-    /// The 1st and 99th percentile of the fitted components' strains over all states; of their size where the curve is odd
-    /// and bends either way alike.
+    /// The 1st and 99th percentile of the fitted components' strains over all states; of their size, and from zero on, where the
+    /// curve is odd.
     pub fn visited(&self) -> [f64; 2] {
-        let bends = self.bends();
+        let odd = self.is_odd();
         let mut strains: Vec<f64> = self.strains().into_iter().map(|[strain, _]| strain).collect();
         strains.sort_by(f64::total_cmp);
         let percentile = |share: f64| {
             let place = share * strains.len().saturating_sub(1) as f64;
             strains.get(place.round() as usize).copied().unwrap_or(0.0)
         };
-        [if bends { 0.0 } else { percentile(0.01) }, percentile(0.99)]
+        [if odd { 0.0 } else { percentile(0.01) }, percentile(0.99)]
     }
 
-    /// The fitted components' strains over all states, each with the area, m², that it stands for; of bending their sizes.
+    /// The fitted components' strains over all states, each with the area, m², that it stands for; of an odd curve their sizes.
     pub fn strains(&self) -> Vec<[f64; 2]> {
-        let bends = self.bends();
-        let sized = |[strain, area]: [f64; 2]| [if bends { strain.abs() } else { strain }, area];
+        let odd = self.is_odd();
+        let sized = |[strain, area]: [f64; 2]| [if odd { strain.abs() } else { strain }, area];
         self.settled()
             .flat_map(|s| {
                 self.task.fitted.iter().flat_map(move |&c| s.replica.cloth(s.frame).strains(c, s.x))
@@ -258,15 +258,15 @@ impl<'a> Simulation<'a> {
             .collect()
     }
 
-    fn bends(&self) -> bool {
-        self.task.fitted.iter().any(|component| component.is_bending())
+    /// True if the fitted curve is odd: of shear and bending.
+    fn is_odd(&self) -> bool {
+        !self.task.fitted.iter().any(|component| component.is_stretch())
     }
 
     /// The largest strain that control points should reach.
     pub fn reach(&self) -> f64 {
-        let [low, high] = self.visited();
-        let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
-        (if odd { high.max(-low) } else { high }).max(f64::MIN_POSITIVE)
+        let [_, high] = self.visited();
+        high.max(f64::MIN_POSITIVE)
     }
 
     /// Vertices that were seen too far off a table's lines, over all frames.
