@@ -4,8 +4,10 @@
 
 mod bending;
 mod closed_form;
+mod contradiction;
 mod coverage;
 mod droop;
+mod metamorphic;
 mod outliers;
 mod published;
 mod recovery;

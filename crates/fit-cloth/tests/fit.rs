@@ -221,3 +221,23 @@ fn a_sequence_that_others_replace_can_be_left_out() {
     // Not every variant could spare the same sequences.
     assert_eq!(json["ranked_by"], "fit");
 }
+
+#[test]
+fn shapes_that_rise_against_gravity_are_exit_3_and_name_the_field() {
+    let (_keep, path) = folder();
+    let file = path.join("set/bend-warp/test.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    assert!(text.contains("-9.81"));
+    fs::write(&file, text.replace("-9.81", "9.81")).unwrap();
+    let output = fit("bend", &path, "both", &["--variant", "linear"]);
+    let [text, warnings] = said(&output);
+    assert!(text.contains("fitted to the shapes of bend-weft"), "{text}");
+    assert!(warnings.contains("warning: sequence bend-warp, test.toml gravity_m_s2"), "{warnings}");
+    fs::remove_dir_all(path.join("set/bend-weft")).unwrap();
+    let output = fit("bend", &path, "none", &["--known", "both/material.json"]);
+    let [_, errors] = said(&output);
+    assert_eq!(output.status.code(), Some(3), "{errors}");
+    for words in ["error: sequence bend-warp, test.toml gravity_m_s2", "the sign of gravity", "mm above"] {
+        assert!(errors.contains(words), "{words}: {errors}");
+    }
+}

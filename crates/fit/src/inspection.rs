@@ -8,10 +8,17 @@
 //! A check compares what two measured quantities say of the same thing: weight against the way a sheet sags, clip poses
 //! against the vertices that were seen, forces at the gauge length against rest.
 
+mod edge;
+mod failed_points;
+mod poses;
+mod profile;
+mod sag;
 mod size;
+mod weight;
 
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -80,7 +87,8 @@ impl Inspection {
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 1] = [size::check];
+const CHECKS: [Check; 6] =
+    [size::check, failed_points::check, poses::check, weight::check, sag::check, edge::check];
 
 /// Runs all checks on all sequences of a set.
 pub fn inspect(set: &MeasurementSet) -> Inspection {
@@ -98,6 +106,7 @@ pub fn inspect(set: &MeasurementSet) -> Inspection {
         }
         inspection.notices.extend(notices);
     }
+    weight::doubt_bending(&inspection.set, &mut inspection.notices);
     inspection
 }
 
@@ -112,3 +121,27 @@ pub fn inspect_sequence(fabric: &Fabric, sequence: &Sequence) -> (Sequence, Vec<
     }
     (sequence, notices)
 }
+
+/// Standard deviation of a coordinate of a vertex, m; where none is told a tenth of a millimetre, as cameras have it.
+fn position_noise(sequence: &Sequence) -> f64 {
+    sequence.noise.and_then(|noise| noise.position_m).unwrap_or(1e-4)
+}
+
+/// True if a vertex was observed there.
+fn is_seen(place: &Vector3<f64>) -> bool {
+    place.iter().all(|c| c.is_finite())
+}
+
+/// Area of the rest mesh, m².
+fn area(sequence: &Sequence) -> f64 {
+    (0..sequence.mesh.triangles.len()).map(|triangle| 0.5 * sequence.mesh.double_area(triangle)).sum()
+}
+
+/// The middle of some numbers; NaN of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests;

@@ -95,6 +95,7 @@ mod locator;
 pub mod material;
 pub mod material_file;
 pub mod measure;
+mod placement;
 pub mod prediction;
 pub mod refine;
 pub mod repair;

@@ -253,12 +253,13 @@ pub fn tip_deflection(profile: &[ProfilePoint]) -> Option<f64> {
     profile.last().map(|tip| -tip.height).filter(|deflection| !deflection.is_nan())
 }
 
-fn moved(pose: &Isometry3<f64>, rest: &Vector3<f64>) -> Vector3<f64> {
+/// Where a pose takes a rest point, m.
+pub(crate) fn moved(pose: &Isometry3<f64>, rest: &Vector3<f64>) -> Vector3<f64> {
     (pose * Point3::from(*rest)).coords
 }
 
 /// Mean of vectors; NaN for none.
-fn mean<const D: usize>(vectors: impl Iterator<Item = SVector<f64, D>>) -> SVector<f64, D> {
+pub(crate) fn mean<const D: usize>(vectors: impl Iterator<Item = SVector<f64, D>>) -> SVector<f64, D> {
     let (count, sum) = vectors.fold((0usize, SVector::zeros()), |(count, sum), v| (count + 1, sum + v));
     sum / count as f64
 }

@@ -9,7 +9,8 @@ mod table;
 
 use crate::error::{Error, Result};
 use crate::frame::{Kind, Phase, Sequence};
-use crate::specimen::Specimen;
+use crate::placement::in_place;
+use crate::specimen::{FLAT_SLOPE, Specimen};
 use blend::Blend;
 use clips::Grip;
 use cloth_sim::cloth::{Cloth, Problem};
@@ -21,9 +22,6 @@ use std::collections::BTreeMap;
 use table::{Lines, Overhang};
 
 pub use table::TableHold;
-
-/// Largest strain that flattening the clips' motion into the plane may change before the replica moves in space.
-const FLATTENING_STRAIN: f64 = 1e-5;
 
 /// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
 const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
@@ -142,6 +140,7 @@ impl Replica {
     /// A rest mesh that is no rectangle; neither clips nor a table; clips that claim the same node and disagree; no frame in
     /// which anything happens or is measured; springs in long cells; what the mechanics refuse.
     pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
+        let sequence = &*in_place(sequence);
         // On the bias the yarns run along the cells' diagonals: triangles without an edge along each would lock.
         let diagonals = match (sequence.kind, parts.model) {
             (Kind::StretchBias, Model::Stvk | Model::SoftConstraint) => Diagonals::Crossed,
@@ -276,7 +275,7 @@ impl Replica {
             None => matches!(sequence.kind, Kind::Shear | Kind::ComplexShear),
         };
         self.planar = parts.flat
-            || gravity.z == 0.0
+            || gravity.z.abs() <= FLAT_SLOPE * gravity.norm()
                 && starts.iter().all(|x| is_planar(x, &grip.group_of, specimen))
                 && !(bends && shapes.iter().any(leaves_plane));
         if parts.flat {
@@ -421,7 +420,7 @@ fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool
     let heights = (0..group_of.len()).filter(|&node| group_of[node].is_some()).map(|node| x[3 * node + 2]);
     let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
     let side = specimen.grid.width.min(specimen.grid.height);
-    0.5 * ((high - low) / side).powi(2) <= FLATTENING_STRAIN
+    high - low <= FLAT_SLOPE * side
 }
 
 /// True if an observed shape does not leave its plane by more than its noise makes it.

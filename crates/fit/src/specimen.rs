@@ -17,6 +17,9 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vect
 /// Cells along the two sides of a square specimen unless told otherwise: 25×25 nodes.
 const DEFAULT_CELLS: usize = 24;
 
+/// What leaves a plane by no more than this slope counts as in it: flattening changes strains by half its square, 1e-5.
+pub(crate) const FLAT_SLOPE: f64 = 4.5e-3;
+
 /// The simulation's grid over a measured specimen.
 #[derive(Debug, Clone)]
 pub struct Specimen {

@@ -6,6 +6,7 @@
 use crate::error::Result;
 use crate::frame::{Kind, MeasurementSet, Sequence};
 use crate::measure::{Pull, aggregated_torque, clip_centres, pulls, stretching_force_difference};
+use crate::placement::in_place;
 use crate::prediction::{Prediction, predict};
 use crate::report::{ForceRow, SequenceReport};
 use crate::specimen::rest_normal;
@@ -191,7 +192,8 @@ fn measured_whole(
     let centre = centres.iter().sum::<Vector3<f64>>() / centres.len() as f64;
     match measure {
         Measure::AggregatedTorque => {
-            Some(aggregated_torque(&forces, &centres, &centre, &rest_normal(&sequence.mesh)))
+            let normal = rest_normal(&in_place(sequence).mesh);
+            Some(aggregated_torque(&forces, &centres, &centre, &normal))
         }
         Measure::StretchingForceDifference => stretching_force_difference(&forces, &centres),
     }

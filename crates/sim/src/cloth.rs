@@ -329,8 +329,8 @@ impl Cloth {
         })
     }
 
-    /// True if a triangle turns over between two states of a planar problem.
-    pub(crate) fn turns_over(&self, x: &[f64], to: &[f64]) -> bool {
+    /// True if a triangle turns over between two states of a planar problem, 3 stacked coordinates a node each.
+    pub fn turns_over(&self, x: &[f64], to: &[f64]) -> bool {
         let faces_up = |x: &[f64], nodes: [usize; 3]| {
             let [a, b, c] = gather::<3, 2>(nodes, x);
             (b - a).perp(&(c - a)) > 0.0

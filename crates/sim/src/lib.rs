@@ -79,4 +79,5 @@ pub mod load;
 pub mod material;
 pub mod membrane;
 pub mod mesh;
+pub mod rigid;
 pub mod samples;

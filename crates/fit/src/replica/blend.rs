@@ -1,6 +1,8 @@
 //! What the clips do, blended over the cloth between them: a harmonic extension.
 
+use crate::measure::moved;
 use cloth_sim::mesh::Mesh;
+use cloth_sim::rigid::nearest_motion;
 use nalgebra::Vector3;
 
 /// Extends values from held nodes over the mesh, so that they solve Laplace's equation with nothing flowing out at the
@@ -49,21 +51,21 @@ impl Blend {
         }
     }
 
-    /// The shape whose held nodes are displaced as given, 3 stacked coordinates a node, m.
+    /// The shape whose held nodes are where they are told, 3 stacked coordinates a node, m: the sheet as a whole goes along
+    /// with them, and what is left of their motion is blended.
     ///
-    /// * `displaced` — where a held node is, given its index
-    pub(super) fn shape(&self, mesh: &Mesh, displaced: impl Fn(usize) -> Vector3<f64>) -> Vec<f64> {
-        let places: Vec<Vector3<f64>> = (0..mesh.len())
-            .map(|node| if self.held[node] { displaced(node) } else { mesh.positions[node] })
-            .collect();
-        let mut x: Vec<f64> = places.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+    /// * `place` — where a held node is, given its index
+    pub(super) fn shape(&self, mesh: &Mesh, place: impl Fn(usize) -> Vector3<f64>) -> Vec<f64> {
+        let rest = &mesh.positions;
+        let held = || (0..mesh.len()).filter(|&node| self.held[node]);
+        let motion = nearest_motion(&held().map(|node| [rest[node], place(node)]).collect::<Vec<_>>());
+        let mut x: Vec<f64> = rest.iter().flat_map(|&p| <[f64; 3]>::from(moved(&motion, &p))).collect();
         for i in 0..3 {
-            let mut moved: Vec<f64> =
-                places.iter().zip(&mesh.positions).map(|(place, rest)| place[i] - rest[i]).collect();
-            self.extend(&mut moved);
-            for node in (0..mesh.len()).filter(|&node| !self.held[node]) {
-                x[3 * node + i] = mesh.positions[node][i] + moved[node];
-            }
+            let mut left = vec![0.0; mesh.len()];
+            held().for_each(|node| left[node] = place(node)[i] - x[3 * node + i]);
+            self.extend(&mut left);
+            x.iter_mut().skip(i).step_by(3).zip(&left).for_each(|(x, left)| *x += left);
+            held().for_each(|node| x[3 * node + i] = place(node)[i]);
         }
         x
     }

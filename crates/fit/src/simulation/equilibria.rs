@@ -85,7 +85,10 @@ impl<'a> Simulation<'a> {
         let mut found = solver.solve(curves, &mut x, settings);
         self.meter.add(&found);
         let mut escaped = found.escaped;
-        if !found.converged() && falls_back {
+        // In the plane a triangle cannot turn over without passing through itself: such a balance is that of a crumpled start.
+        let rest = replica.rest();
+        let crumpled = |x: &[f64]| cloth.turns_over(&rest, x);
+        if (!found.converged() || crumpled(&x)) && falls_back {
             // A measured shape or a prediction that was too far off: from the replica's own start instead.
             self.meter.begins_anew();
             x.copy_from_slice(&frame.start);
@@ -93,14 +96,15 @@ impl<'a> Simulation<'a> {
             self.meter.add(&found);
             escaped = found.escaped;
         }
-        if !found.converged() && falls_back && !replica.is_on_table() {
+        if (!found.converged() || crumpled(&x)) && falls_back && !replica.is_on_table() {
             // In load steps, from the flat sheet.
             self.meter.takes_load_steps();
-            x = replica.rest();
+            x.copy_from_slice(&rest);
             found = solver.drive(curves, &mut x, &frame.start, settings);
             self.meter.add(&found);
             escaped = found.escaped;
         }
+        let escaped = escaped || crumpled(&x);
         let mut result = FrameResult {
             state: State {
                 x,

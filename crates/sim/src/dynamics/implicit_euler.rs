@@ -131,9 +131,9 @@ impl<'a> ImplicitEuler<'a> {
                 let found = self.solver.time_step(curves, &mut state.positions, &self.predicted, &settings);
                 let status = match found.status {
                     equilibrium::Status::Converged | equilibrium::Status::Unstable => Status::Done,
-                    equilibrium::Status::IterationLimit | equilibrium::Status::Stalled => {
-                        Status::NotConverged
-                    }
+                    equilibrium::Status::IterationLimit
+                    | equilibrium::Status::Stalled
+                    | equilibrium::Status::NotParallel => Status::NotConverged,
                     equilibrium::Status::NotFinite => Status::NotFinite,
                 };
                 Step {

@@ -3,7 +3,8 @@
 use super::{Equilibrium, Settings, Solver, Status};
 use crate::cloth::Cloth;
 use crate::material::Curves;
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use crate::rigid::nearest_rotation;
+use nalgebra::{Rotation3, Vector3};
 use std::collections::BTreeMap;
 
 /// A step that is not balanced after so many iterations was too long.
@@ -31,7 +32,7 @@ impl Solver<'_> {
     /// leave unstable states as a solve may.
     ///
     /// # Panics
-    /// If `x` or `target` has another length than the cloth has coordinates, or `x` tied groups that are not parallel.
+    /// If `x` or `target` has another length than the cloth has coordinates.
     pub fn drive(
         &mut self,
         curves: &Curves,
@@ -40,7 +41,9 @@ impl Solver<'_> {
         settings: &Settings,
     ) -> Equilibrium {
         assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
-        assert!(self.cloth.is_parallel(x), "tied groups are parallel");
+        if let Some(refused) = self.refused(x) {
+            return refused;
+        }
         let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let clips = motions(self.cloth, x, target);
         let limited = Settings { max_iterations: settings.max_iterations.min(ITERATIONS), ..*settings };
@@ -141,7 +144,8 @@ impl Motion {
         let mean =
             |x: &[f64]| nodes.iter().map(|&node| at(x, node)).sum::<Vector3<f64>>() / nodes.len() as f64;
         let [middle, end] = [mean(x), mean(target)];
-        let turn = nearest_turn(nodes.iter().map(|&node| [at(x, node) - middle, at(target, node) - end]));
+        let arms = nodes.iter().map(|&node| [at(x, node) - middle, at(target, node) - end]);
+        let turn = nearest_rotation(arms).scaled_axis();
         let follower = |&node: &usize| {
             let (arm, target) = (at(x, node) - middle, at(target, node));
             Follower { node, arm, rest: target - end - Rotation3::new(turn) * arm, target }
@@ -159,29 +163,6 @@ impl Motion {
             x[3 * node..3 * node + 3].copy_from_slice(place.as_slice());
         }
     }
-}
-
-/// The rotation, axis times angle, that takes the first of each pair nearest to the second; where several do, the one
-/// that turns least.
-///
-/// Source: Kabsch 1976, by the singular value decomposition.
-fn nearest_turn(pairs: impl Iterator<Item = [Vector3<f64>; 2]>) -> Vector3<f64> {
-    let (mut moment, mut size) = (Matrix3::zeros(), 0.0);
-    for [before, after] in pairs {
-        moment += after * before.transpose();
-        size += before.norm_squared() + after.norm_squared();
-    }
-    // One node does not turn. Written so that a NaN does not either.
-    if !(size > 0.0 && size.is_finite()) {
-        return Vector3::zeros();
-    }
-    // A row of nodes has no angle about itself: a trace of the identity decides.
-    let svd = (moment + Matrix3::identity() * (1e-6 * size)).svd(true, true);
-    let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Vector3::zeros() };
-    let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, (u * v).determinant().signum()));
-    let rotation = Rotation3::from_matrix_unchecked(u * mirror * v);
-    // A quaternion knows the axis of half a turn, too.
-    UnitQuaternion::from_rotation_matrix(&rotation).scaled_axis()
 }
 
 #[cfg(test)]

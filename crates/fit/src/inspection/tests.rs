@@ -1,0 +1,293 @@
+use super::*;
+use crate::io::read_set;
+use nalgebra::{Isometry3, Vector3};
+use std::path::Path;
+
+const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
+
+fn fixture(name: &str) -> MeasurementSet {
+    read_set(&Path::new(FIXTURES).join(name)).unwrap()
+}
+
+/// One sequence of the denim's set, changed, and what is noticed of it.
+fn noticed(name: &str, change: impl FnOnce(&mut Fabric, &mut Sequence)) -> Vec<Notice> {
+    let MeasurementSet { mut fabric, sequences } = fixture("cotton-denim");
+    let mut sequence = sequences.into_iter().find(|sequence| sequence.name == name).unwrap();
+    change(&mut fabric, &mut sequence);
+    inspect_sequence(&fabric, &sequence).1
+}
+
+/// The only notice, which must refuse, and say all of this.
+fn refused(notices: &[Notice], said: &[&str]) {
+    let [notice] = notices else { panic!("{notices:?}") };
+    assert_eq!(notice.severity, Severity::Refusal, "{notice}");
+    let text = notice.to_string();
+    said.iter().for_each(|part| assert!(text.contains(part), "{part:?} in {text}"));
+}
+
+fn each_place(sequence: &mut Sequence, change: impl Fn(&mut Vector3<f64>)) {
+    sequence.frames.iter_mut().filter_map(|frame| frame.positions.as_mut()).flatten().for_each(change);
+}
+
+#[test]
+fn nothing_is_noticed_of_what_is_as_it_should_be() {
+    for name in ["cotton-denim", "cotton-satin", "rayon-spandex-knit", "wool-cotton"] {
+        assert_eq!(inspect(&fixture(name)).notices, []);
+    }
+}
+
+/// The figure in front of some words, in a message.
+fn figure(notice: &Notice, words: &str) -> f64 {
+    let text = notice.to_string();
+    let before = text.split(words).next().unwrap().trim_end();
+    before.rsplit(' ').next().unwrap().parse().unwrap()
+}
+
+/// How far the tip lies below the back of the sheet where it does most, mm.
+fn largest_drop(sequence: &Sequence) -> f64 {
+    let rest = &sequence.mesh.positions;
+    let [back, tip] = [-0.1, 0.0].map(|x| {
+        let on_line = move |v: &usize| (rest[*v].x - x).abs() < 1e-9;
+        (0..rest.len()).filter(on_line).collect::<Vec<_>>()
+    });
+    assert_eq!([back.len(), tip.len()], [25, 25]);
+    let mean = |line: &[usize], shape: &[Vector3<f64>]| line.iter().map(|&v| shape[v].z).sum::<f64>() / 25.0;
+    let shapes = sequence.frames.iter().filter_map(|frame| frame.positions.as_ref());
+    shapes.map(|shape| 1e3 * (mean(&back, shape) - mean(&tip, shape))).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_sheet_that_rises_against_gravity_is_refused_with_its_causes_and_figures() {
+    let drop = largest_drop(&sequence_of("bend-weft"));
+    assert!(drop > 30.0);
+    let close = |notice: &Notice, words: &str| (figure(notice, words) - drop).abs() < 0.06;
+    let up = noticed("bend-weft", |_, sequence| sequence.gravity = -sequence.gravity);
+    refused(
+        &up,
+        &["sequence bend-weft", "test.toml gravity_m_s2", "positions.npy", "the sign of gravity, or of z"],
+    );
+    assert!(close(&up[0], "mm above"), "{}", up[0]);
+    let mirrored = noticed("bend-weft", |_, sequence| each_place(sequence, |place| place.z = -place.z));
+    assert_eq!(mirrored, up);
+    let turned = noticed("bend-weft", |_, sequence| {
+        let table = sequence.table.as_mut().unwrap();
+        table.outward = table.outward.map(|c| -c);
+    });
+    refused(&turned, &["test.toml table.outward", "gravity and z agree"]);
+    assert!(close(&turned[0], "mm below"), "{}", turned[0]);
+    let both = noticed("bend-weft", |_, sequence| {
+        let table = sequence.table.as_mut().unwrap();
+        table.outward = table.outward.map(|c| -c);
+        sequence.gravity = -sequence.gravity;
+    });
+    refused(&both, &["table.outward with gravity_m_s2", "edge_point_m"]);
+}
+
+#[test]
+fn a_sheet_that_stays_flat_under_its_weight_is_refused() {
+    let exactly = noticed("bend-weft", |_, sequence| each_place(sequence, |place| place.z = 0.0));
+    refused(&exactly, &["positions.npy", "flat", "83 mm", "z"]);
+    let mut sign = 1.0;
+    let mut toss = || {
+        sign = -sign;
+        sign * 1e-4
+    };
+    let with_noise = noticed("bend-weft", |_, sequence| {
+        for place in sequence.frames.iter_mut().filter_map(|f| f.positions.as_mut()).flatten() {
+            place.z = toss();
+        }
+    });
+    refused(&with_noise, &["flat"]);
+    // Gravity along the table, or none.
+    for gravity in [Vector3::zeros(), Vector3::x() * 9.81, Vector3::y() * -9.81] {
+        let notices = noticed("bend-weft", |_, sequence| sequence.gravity = gravity);
+        refused(&notices, &["test.toml gravity_m_s2", "not across the table"]);
+    }
+}
+
+#[test]
+fn an_edge_that_is_elsewhere_is_found_and_its_distance_told() {
+    for name in ["bend-weft", "bend-warp", "bend-bias"] {
+        for off in [-0.02, -0.01, 0.01, 0.02] {
+            let notices =
+                noticed(name, |_, sequence| sequence.table.as_mut().unwrap().edge_point_m[0] += off);
+            let [side, way] = if off > 0.0 {
+                ["mm before it", "below the table before its edge"]
+            } else {
+                ["mm past it", "flat past the table's edge"]
+            };
+            refused(&notices, &["test.toml table.edge_point_m", way]);
+            let told = figure(&notices[0], side);
+            assert!((told - 1e3 * f64::abs(off)).abs() < 2.0, "{name}, {off}: {}", notices[0]);
+        }
+    }
+    // By less than the lines are apart.
+    for off in [-0.002, 0.002] {
+        assert_eq!(noticed("bend-weft", |_, s| s.table.as_mut().unwrap().edge_point_m[0] += off), []);
+    }
+    let doubted = noticed("bend-weft", |_, s| s.table.as_mut().unwrap().edge_point_m[0] += 0.006);
+    assert!(matches!(&doubted[..], [notice] if notice.severity == Severity::Doubt), "{doubted:?}");
+}
+
+#[test]
+fn poses_that_are_not_where_the_clips_were_seen_are_refused() {
+    let halved = noticed("stretch-weft", |_, sequence| {
+        let poses = sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses);
+        poses.for_each(|pose| pose.translation.vector *= 0.5);
+    });
+    refused(&halved, &["clips.csv", "positions.npy", "(rms)", "in frame 6", "qw first"]);
+    // Half of what a clip moved, and the noise of three coordinates.
+    let MeasurementSet { sequences, .. } = fixture("cotton-denim");
+    let sequence = sequences.iter().find(|s| s.name == "stretch-weft").unwrap();
+    let way = sequence.frames[6].poses[0].translation.vector.norm();
+    let expected = 1e3 * (0.25 * way * way + 3.0 * 7.5e-5f64.powi(2)).sqrt();
+    assert!((figure(&halved[0], "mm (rms)") - expected).abs() < 0.1, "{expected} {}", halved[0]);
+    // As good as an instrument that sees a clip by one vertex.
+    let noisy = noticed("shear", |_, sequence| {
+        let error = Isometry3::new(Vector3::new(1e-4, -1e-4, 5e-5), Vector3::new(0.0, 5e-4, 7e-4));
+        sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses).for_each(|pose| *pose = error * *pose);
+    });
+    assert_eq!(noisy, []);
+}
+
+fn sequence_of(name: &str) -> Sequence {
+    fixture("cotton-denim").sequences.into_iter().find(|sequence| sequence.name == name).unwrap()
+}
+
+/// Which points of which frames are not observed.
+fn unobserved(sequence: &Sequence) -> Vec<(usize, usize)> {
+    let frames = sequence.frames.iter().enumerate();
+    let shapes = frames.filter_map(|(index, frame)| Some((index, frame.positions.as_ref()?)));
+    shapes
+        .flat_map(|(index, shape)| {
+            shape.iter().enumerate().filter(|(_, p)| p.x.is_nan()).map(move |(v, _)| (index, v))
+        })
+        .collect()
+}
+
+/// Where a failed point is said to be, by where it lay at rest and where it was.
+type Way = fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>;
+
+#[test]
+fn points_that_were_not_followed_are_left_out_and_no_others() {
+    let clean = sequence_of("bend-weft");
+    let fabric = fixture("cotton-denim").fabric;
+    let failed: Vec<(usize, usize)> = (0..clean.frames.len())
+        .flat_map(|frame| (0..625).filter(move |v| (v * 7 + frame * 11) % 31 == 0).map(move |v| (frame, v)))
+        .collect();
+    let ways: [(&str, Way); 4] = [
+        ("at one and the same place", |_, _| Vector3::zeros()),
+        ("where they lay at rest", |rest, _| rest),
+        ("where they lay at rest", |rest, _| rest.map(|c| f64::from(c as f32))),
+        ("far away from their neighbours", |_, seen| seen + Vector3::new(0.0, 0.012, 0.016)),
+    ];
+    for (said, way) in ways {
+        let mut sequence = clean.clone();
+        for &(frame, vertex) in &failed {
+            let place = &mut sequence.frames[frame].positions.as_mut().unwrap()[vertex];
+            *place = way(clean.mesh.positions[vertex], *place);
+        }
+        let (inspected, notices) = inspect_sequence(&fabric, &sequence);
+        let [notice] = &notices[..] else { panic!("{notices:?}") };
+        assert_eq!(notice.severity, Severity::Remark);
+        let text = notice.to_string();
+        assert!(text.contains(&format!("{} {said}", failed.len())) && text.contains("in 6 frames"), "{text}");
+        assert!(text.contains(&format!("vertex {} in frame {}", failed[0].1, failed[0].0)), "{text}");
+        assert_eq!(unobserved(&inspected), failed, "{said}");
+    }
+}
+
+#[test]
+fn what_truly_rests_is_observed() {
+    let fabric = fixture("cotton-denim").fabric;
+    // A sheet that lies on the table to the last bit while its other half hangs, and one that rests as a whole.
+    let mut sequence = sequence_of("bend-weft");
+    let rest = sequence.mesh.positions.clone();
+    let hang = |p: &Vector3<f64>| {
+        let past = (p.x + 0.05).max(0.0);
+        Vector3::new(
+            p.x.min(-0.05) + past.cos().mul_add(past, -0.3 * past),
+            p.y,
+            -20.0 * past * past.min(0.02),
+        )
+    };
+    let hung: Vec<Vector3<f64>> = rest.iter().map(hang).collect();
+    for (frame, shape) in sequence.frames.iter_mut().zip([&rest, &hung, &rest, &hung, &rest, &hung]) {
+        frame.positions = Some(shape.clone());
+    }
+    let (inspected, notices) = inspect_sequence(&fabric, &sequence);
+    assert_eq!(unobserved(&inspected), []);
+    assert!(notices.iter().all(|notice| notice.severity > Severity::Remark), "{notices:?}");
+    // Held by a clip that stays while all else is stretched by half.
+    let mut sequence = sequence_of("stretch-weft");
+    let rest = sequence.mesh.positions.clone();
+    for frame in &mut sequence.frames {
+        frame.positions = Some(rest.iter().map(|p| Vector3::new(1.5 * p.x, p.y, p.z)).collect());
+        frame.poses[0] = Isometry3::identity();
+        frame.poses[1] = Isometry3::translation(0.05, 0.0, 0.0);
+    }
+    let (inspected, notices) = inspect_sequence(&fabric, &sequence);
+    assert_eq!((unobserved(&inspected), notices), (vec![], vec![]));
+}
+
+#[test]
+fn weight_that_the_cords_do_not_bear_is_told_with_its_figures() {
+    // Four bars of 13.3 g and 100 mm square of 460 g/m², as it was made: 57.8 g.
+    let borne = 0.0578 * 9.81;
+    let wrong = [
+        noticed("shear", |fabric, _| fabric.areal_density_kg_m2 *= 10.0),
+        noticed("shear", |_, s| s.clips.iter_mut().for_each(|clip| clip.mass_kg *= 1000.0)),
+        noticed("shear", |_, s| s.gravity = -s.gravity),
+    ];
+    for (notices, weight) in wrong.iter().zip([0.0992 * 9.81, 53.2046 * 9.81, borne]) {
+        let [notice] = &notices[..] else { panic!("{notices:?}") };
+        assert_eq!(notice.severity, Severity::Doubt);
+        let text = notice.to_string();
+        for field in ["areal_density_kg_m2", "mass_kg", "gravity_m_s2"] {
+            assert!(text.contains(field), "{text}");
+        }
+        assert!((figure(notice, "N against gravity").abs() - borne).abs() < 0.02, "{text}");
+        assert!((figure(notice, "N, expected") / weight - 1.0).abs() < 0.01, "{text}");
+    }
+    for size in [981.0, 1.0, 9810.0] {
+        for name in ["shear", "bend-weft"] {
+            let notices = noticed(name, |_, sequence| sequence.gravity = Vector3::z() * -size);
+            refused(&notices, &["test.toml gravity_m_s2", &size.to_string(), "9.81"]);
+        }
+    }
+    // What was not measured contradicts nothing.
+    let silent = [
+        noticed("shear", |fabric, sequence| {
+            fabric.areal_density_kg_m2 *= 10.0;
+            sequence.frames.iter_mut().flat_map(|f| &mut f.cords).for_each(|cord| cord.force.z = 0.0);
+        }),
+        noticed("shear", |fabric, sequence| {
+            fabric.areal_density_kg_m2 *= 10.0;
+            sequence.frames.iter_mut().for_each(|frame| frame.cords.retain(|cord| cord.clip > 0));
+        }),
+        noticed("shear", |fabric, sequence| {
+            fabric.areal_density_kg_m2 *= 10.0;
+            sequence.force_direction = Some(Vector3::x());
+        }),
+        noticed("stretch-weft", |fabric, _| fabric.areal_density_kg_m2 *= 10.0),
+    ];
+    assert_eq!(silent, [[], [], [], []].map(|none: [Notice; 0]| none.to_vec()));
+}
+
+#[test]
+fn an_areal_density_that_a_frame_contradicts_is_doubted_where_rigidity_follows_from_it() {
+    let doubted = |set: &MeasurementSet| {
+        let notices = inspect(set).notices.into_iter();
+        notices.filter(|n| n.severity == Severity::Doubt).map(|n| n.sequence).collect::<Vec<_>>()
+    };
+    let mut set = fixture("cotton-denim");
+    set.fabric.areal_density_kg_m2 *= 10.0;
+    assert_eq!(
+        doubted(&set),
+        ["complex-shear", "corner-pull", "shear", "bend-bias", "bend-warp", "bend-weft"]
+    );
+    // Heavier clips alone than what is borne: it is not the cloth.
+    let mut set = fixture("cotton-denim");
+    set.sequences.iter_mut().flat_map(|s| &mut s.clips).for_each(|clip| clip.mass_kg *= 1000.0);
+    assert_eq!(doubted(&set), ["complex-shear", "corner-pull", "shear"]);
+}

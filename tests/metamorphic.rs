@@ -1,0 +1,308 @@
+//! What a measurement is told in must not matter: the same test in other axes, another order, another image gives the same
+//! curves.
+//!
+//! ```text
+//!  set ──▶ fit ──▶ curves
+//!   │                 ‖  within 1e-6
+//!  moved, mirrored, reordered ──▶ fit ──▶ curves, weft and warp exchanged where the image does that
+//! ```
+//!
+//! A small rig: 9×9 nodes, five frames each of both stretches, a picture frame, and two overhangs.
+
+use cloth_fit::frame::{Kind, MeasurementSet, Sequence};
+use cloth_fit::incremental::{FitReport, Stage, fit};
+use cloth_fit::knowledge::Knowledge;
+use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_fit::stage::stretch::fit as fit_stretch;
+use cloth_fit::stage::{Settings, Watch};
+use cloth_sim::material::{Component, Model};
+use fit_cloth_tests::UniformStretch;
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector2, Vector3};
+use rand::seq::SliceRandom;
+use rand::{SeedableRng, rngs::StdRng};
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// A set, and the curves that it gives.
+static MEASURED: LazyLock<(MeasurementSet, FitReport)> = LazyLock::new(|| {
+    let text = include_str!("../fixtures/fabrics/cotton-denim.toml");
+    let fabric = KnownFabric::parse(Path::new("cotton-denim.toml"), text).unwrap();
+    let sequences = vec![Kind::StretchWeft, Kind::StretchWarp, Kind::Shear, Kind::BendWeft, Kind::BendWarp];
+    let rig = Rig { sequences, nodes: [25, 25], measured: [9, 9], frames: 5, ..Rig::default() };
+    let set = rig.measure(&fabric).unwrap();
+    let report = fitted(&set);
+    (set, report)
+});
+
+fn fitted(set: &MeasurementSet) -> FitReport {
+    let settings = Settings { nodes: Some([9, 9]), ..Settings::default() };
+    fit(set, &Stage::ALL, &Knowledge::default(), &settings, &mut Watch::default()).unwrap()
+}
+
+/// Fits a changed set, whose curves must be those of the set as it was.
+///
+/// * `image` — which component a component has become
+fn same_curves(what: &str, image: impl Fn(Component) -> Component, change: impl Fn(&mut MeasurementSet)) {
+    let (set, before) = &*MEASURED;
+    let mut changed = set.clone();
+    changed.sequences.iter_mut().for_each(|sequence| sequence.mesh.grid = None);
+    change(&mut changed);
+    let after = fitted(&changed);
+    assert!(after.failures.is_empty() && after.notices == before.notices, "{what}: {:?}", after.notices);
+    for component in Component::ALL {
+        let (Some(before), Some(after)) = (before.stage(component), after.stage(image(component))) else {
+            assert!(
+                before.stage(component).is_none() && after.stage(image(component)).is_none(),
+                "{what}: {component}"
+            );
+            continue;
+        };
+        let [before, after] = [before, after].map(|stage| &stage.curve.samples);
+        let largest = before.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
+        let reach = before[before.len() - 1].strain;
+        for (a, b) in before.iter().zip(after) {
+            let off = f64::max((a.stress - b.stress).abs() / largest, (a.strain - b.strain).abs() / reach);
+            assert!(
+                off < 1e-6,
+                "{what}: {component} at {}: {} and at {} {}",
+                a.strain,
+                a.stress,
+                b.strain,
+                b.stress
+            );
+        }
+    }
+}
+
+fn itself(component: Component) -> Component {
+    component
+}
+
+fn exchanged(component: Component) -> Component {
+    match component {
+        Component::StretchWeft => Component::StretchWarp,
+        Component::StretchWarp => Component::StretchWeft,
+        Component::BendWeft => Component::BendWarp,
+        Component::BendWarp => Component::BendWeft,
+        other => other,
+    }
+}
+
+/// Every vector of a sequence: what is a place, and what is a direction.
+fn each_vector(sequence: &mut Sequence, place: &dyn Fn(&mut Vector3<f64>), turn: &dyn Fn(&mut Vector3<f64>)) {
+    turn(&mut sequence.gravity);
+    sequence.force_direction.iter_mut().for_each(turn);
+    sequence.mesh.positions.iter_mut().for_each(place);
+    if let Some(table) = &mut sequence.table {
+        let changed = |array: &mut [f64; 3], change: &dyn Fn(&mut Vector3<f64>)| {
+            let mut vector = Vector3::from(*array);
+            change(&mut vector);
+            *array = vector.into();
+        };
+        changed(&mut table.edge_point_m, place);
+        changed(&mut table.edge_direction, turn);
+        changed(&mut table.outward, turn);
+    }
+    for frame in &mut sequence.frames {
+        frame.positions.iter_mut().flatten().for_each(place);
+        frame.cords.iter_mut().for_each(|cord| turn(&mut cord.force));
+        frame.cords.iter_mut().filter_map(|cord| cord.point.as_mut()).for_each(place);
+    }
+}
+
+/// Everything moved as one.
+fn move_all(set: &mut MeasurementSet, motion: &Isometry3<f64>) {
+    for sequence in &mut set.sequences {
+        each_vector(
+            sequence,
+            &|place| *place = motion.rotation * *place + motion.translation.vector,
+            &|direction| *direction = motion.rotation * *direction,
+        );
+        for pose in sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses) {
+            *pose = motion * *pose * motion.inverse();
+        }
+    }
+}
+
+/// Only the specimens at rest moved.
+fn move_rest(set: &mut MeasurementSet, motion: &Isometry3<f64>) {
+    for sequence in &mut set.sequences {
+        for place in &mut sequence.mesh.positions {
+            *place = motion.rotation * *place + motion.translation.vector;
+        }
+        for pose in sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses) {
+            *pose *= motion.inverse();
+        }
+    }
+}
+
+/// Material coordinates turned or mirrored.
+fn turn_yarns(set: &mut MeasurementSet, turn: impl Fn(Vector2<f64>) -> Vector2<f64>) {
+    for mesh in set.sequences.iter_mut().map(|sequence| &mut sequence.mesh) {
+        mesh.material.iter_mut().for_each(|material| *material = turn(*material));
+    }
+}
+
+/// Faces wound the other way.
+fn rewind(set: &mut MeasurementSet) {
+    for triangle in set.sequences.iter_mut().flat_map(|sequence| &mut sequence.mesh.triangles) {
+        triangle.swap(1, 2);
+    }
+}
+
+fn exchange_kinds(set: &mut MeasurementSet) {
+    std::mem::swap(&mut set.fabric.width_m, &mut set.fabric.height_m);
+    for sequence in &mut set.sequences {
+        sequence.kind = match sequence.kind {
+            Kind::StretchWeft => Kind::StretchWarp,
+            Kind::StretchWarp => Kind::StretchWeft,
+            Kind::BendWeft => Kind::BendWarp,
+            Kind::BendWarp => Kind::BendWeft,
+            other => other,
+        };
+    }
+}
+
+/// The image in a mirror through the origin, across `normal`.
+fn mirror(set: &mut MeasurementSet, normal: Vector3<f64>) {
+    let image = Matrix3::identity() - normal * normal.transpose() * 2.0;
+    for sequence in &mut set.sequences {
+        each_vector(sequence, &|place| *place = image * *place, &|direction| *direction = image * *direction);
+        for pose in sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses) {
+            let turned = image * pose.rotation.to_rotation_matrix().matrix() * image;
+            pose.rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turned));
+            pose.translation.vector = image * pose.translation.vector;
+        }
+    }
+}
+
+#[test]
+fn all_curves_come_of_the_small_rig() {
+    let (_, report) = &*MEASURED;
+    assert_eq!(report.notices, []);
+    for component in [
+        Component::StretchWeft,
+        Component::StretchWarp,
+        Component::Shear,
+        Component::BendWeft,
+        Component::BendWarp,
+    ] {
+        assert!(report.stage(component).unwrap().curve.observed, "{component}");
+    }
+}
+
+#[test]
+fn a_set_that_is_moved_as_a_whole_gives_the_same_curves() {
+    let motion = Isometry3::new(Vector3::new(1.0, -2.0, 0.7), Vector3::new(0.4, -1.1, 2.0));
+    same_curves("moved", itself, |set| move_all(set, &motion));
+}
+
+#[test]
+fn a_rest_mesh_may_lie_in_any_plane() {
+    for turn in [
+        Vector3::new(60f64.to_radians(), 0.0, 0.0),
+        Vector3::new(0.0, 2f64.to_radians(), 0.0),
+        Vector3::new(1.9, -1.2, 1.7),
+    ] {
+        let motion = Isometry3::new(Vector3::new(0.3, 0.1, -0.2), turn);
+        same_curves(&format!("rest turned by {turn:?}"), itself, |set| move_rest(set, &motion));
+    }
+}
+
+#[test]
+fn a_mirror_image_gives_the_same_curves_though_it_shears_the_other_way() {
+    // In the plane, where shear changes its sign, and across it, where nothing does but the side that is seen.
+    same_curves("mirrored in y", itself, |set| {
+        mirror(set, Vector3::y());
+        turn_yarns(set, |m| Vector2::new(m.x, -m.y));
+        rewind(set);
+    });
+    same_curves("sheared the other way", itself, |set| {
+        turn_yarns(set, |m| Vector2::new(-m.x, m.y));
+        rewind(set);
+    });
+}
+
+#[test]
+fn yarns_that_are_turned_or_exchanged_give_the_same_curves() {
+    same_curves("by 180°", itself, |set| turn_yarns(set, |m| -m));
+    same_curves("by 90°", exchanged, |set| {
+        turn_yarns(set, |m| Vector2::new(-m.y, m.x));
+        exchange_kinds(set);
+    });
+    same_curves("exchanged", exchanged, |set| {
+        turn_yarns(set, |m| Vector2::new(m.y, m.x));
+        rewind(set);
+        exchange_kinds(set);
+    });
+}
+
+#[test]
+fn the_order_of_vertices_and_frames_does_not_matter() {
+    same_curves("vertices", itself, |set| {
+        let mut random = StdRng::seed_from_u64(5);
+        for sequence in &mut set.sequences {
+            let mut from: Vec<usize> = (0..sequence.mesh.len()).collect();
+            from.shuffle(&mut random);
+            let mut to = vec![0; from.len()];
+            from.iter().enumerate().for_each(|(new, &old)| to[old] = new);
+            let taken = |of: &[Vector3<f64>]| from.iter().map(|&old| of[old]).collect::<Vec<_>>();
+            sequence.mesh.positions = taken(&sequence.mesh.positions);
+            sequence.mesh.material = from.iter().map(|&old| sequence.mesh.material[old]).collect();
+            sequence.mesh.triangles.iter_mut().flatten().for_each(|vertex| *vertex = to[*vertex]);
+            sequence
+                .clips
+                .iter_mut()
+                .flat_map(|clip| &mut clip.vertices)
+                .for_each(|vertex| *vertex = to[*vertex]);
+            for positions in sequence.frames.iter_mut().filter_map(|frame| frame.positions.as_mut()) {
+                *positions = taken(positions);
+            }
+        }
+    });
+    same_curves("frames", itself, |set| {
+        let mut random = StdRng::seed_from_u64(6);
+        set.sequences.iter_mut().for_each(|sequence| sequence.frames.shuffle(&mut random));
+    });
+}
+
+/// A strip of 50 N/m pulled to a tenth, forces exact and no shape seen: where its solves start is all that tells it from a
+/// crumpled one.
+fn strip() -> MeasurementSet {
+    UniformStretch { model: Model::Stvk, law: &|e| 50.0 * e, largest: 0.1, grip: 0.0, frames: 5, noise: None }
+        .measure()
+}
+
+fn gives_fifty(what: &str, set: &MeasurementSet) {
+    let settings = Settings { nodes: Some([9, 9]), ..Settings::default() };
+    let stage = fit_stretch(set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap();
+    assert!(stage.dropped.is_empty() && stage.sequences[0].multi_stable.is_empty(), "{what}");
+    for sample in &stage.curve.samples {
+        assert!((sample.stress - 50.0 * sample.strain).abs() < 1e-6 * 5.0, "{what}: {sample:?}");
+    }
+}
+
+#[test]
+fn a_strip_that_was_carried_around_without_being_seen_gives_its_curve() {
+    gives_fifty("as it lies", &strip());
+    for turn in [
+        Vector3::z() * 3.0,
+        Vector3::z() * std::f64::consts::PI,
+        Vector3::new(0.3, 2.9, 0.4),
+        Vector3::x() * 3.1,
+    ] {
+        let mut set = strip();
+        move_rest(&mut set, &Isometry3::new(Vector3::new(0.2, 0.4, 0.0), turn));
+        gives_fifty(&format!("rest turned by {turn:?}"), &set);
+    }
+    // Turned around from frame to frame, in its plane and out of it.
+    for axis in [Vector3::z_axis(), Vector3::x_axis()] {
+        let mut set = strip();
+        for (index, frame) in set.sequences[0].frames.iter_mut().enumerate() {
+            let turn = UnitQuaternion::from_axis_angle(&axis, 0.6 * index as f64);
+            frame.poses.iter_mut().for_each(|pose| *pose = turn * *pose);
+            frame.cords.iter_mut().for_each(|cord| cord.force = turn * cord.force);
+        }
+        gives_fifty(&format!("turned about {axis:?} as it was pulled"), &set);
+    }
+}
