@@ -261,8 +261,15 @@ fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
     let report = fit_weft(&measure(&rig()), Model::Stvk);
     let other = measure(&Rig { seed: 77, frames: 7, ..rig() });
     let curves = Curves::from_iter([(Component::StretchWeft, report.curve.curve)]);
-    let predicted =
-        predict(&other, &[Kind::StretchWeft], &curves, &settings(Model::Stvk), &Watch::default()).unwrap();
+    let predicted = predict(
+        &other,
+        &[Kind::StretchWeft],
+        &curves,
+        &Default::default(),
+        &settings(Model::Stvk),
+        &Watch::default(),
+    )
+    .unwrap();
     assert!(predicted.dropped.is_empty());
     let sequence = &predicted.sequences[0];
     println!("prediction: rms {:.2e} N of {:.1} N", sequence.force_rms.unwrap(), sequence.force_largest);

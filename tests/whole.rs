@@ -88,8 +88,15 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
         );
         assert!(second < 0.5 * first);
         let unseen = [Kind::ComplexShear, Kind::CornerPull];
-        let validation =
-            validate(&set, &unseen, report.curves(), &Settings::default(), &Watch::default()).unwrap();
+        let validation = validate(
+            &set,
+            &unseen,
+            report.curves(),
+            &report.assumed(),
+            &Settings::default(),
+            &Watch::default(),
+        )
+        .unwrap();
         assert!(validation.sequences.len() == 2 && validation.prediction.dropped.is_empty());
         for sequence in &validation.sequences {
             let share = sequence.measure_share().unwrap();
@@ -118,7 +125,8 @@ fn another_sample_is_met_as_far_as_it_differs() {
     let report = fit(&first, &Stage::ALL, &Knowledge::default(), &settings, &mut Watch::default()).unwrap();
     let shares = [&first, &second].map(|set| {
         let kinds = [Kind::StretchWeft, Kind::StretchWarp, Kind::Shear];
-        let met = validate(set, &kinds, report.curves(), &settings, &Watch::default()).unwrap();
+        let met =
+            validate(set, &kinds, report.curves(), &report.assumed(), &settings, &Watch::default()).unwrap();
         met.sequences
             .iter()
             .filter_map(|sequence| {

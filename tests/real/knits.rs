@@ -158,8 +158,15 @@ fn predicted(model: Model) -> usize {
         let report = stretch::fit(&known, component, &settings, &mut Watch::default()).unwrap().unwrap();
         assert!(report.converged && report.dropped.is_empty());
         let curves = Curves::from_iter([(component, report.curve.curve.clone())]);
-        let prediction =
-            predict(&unknown, kinds_of(component), &curves, &settings, &Watch::default()).unwrap();
+        let prediction = predict(
+            &unknown,
+            kinds_of(component),
+            &curves,
+            &Default::default(),
+            &settings,
+            &Watch::default(),
+        )
+        .unwrap();
         assert!(prediction.dropped.is_empty() && report.dropped.is_empty());
         let predictions = prediction.sequences;
 

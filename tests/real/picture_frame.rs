@@ -150,7 +150,8 @@ fn a_constant_shear_stiffness_gives_the_forces_and_comes_back() {
     .collect();
     let equilibrium = equilibrium::Settings { tolerance: Tolerance::Relative(1e-10), ..Default::default() };
     let settings = Settings { equilibrium, variant: Variant::Linear, ..Settings::default() };
-    let prediction = predict(&set, &[Kind::Shear], &curves, &settings, &Watch::default()).unwrap();
+    let prediction =
+        predict(&set, &[Kind::Shear], &curves, &Default::default(), &settings, &Watch::default()).unwrap();
     let forces = &prediction.sequences[0].forces;
     assert_eq!((forces.len(), prediction.dropped.len()), (4 * law.len(), 0));
     let off = forces.iter().map(|row| (row.simulated / row.measured - 1.0).abs()).fold(0.0, f64::max);

@@ -1,5 +1,6 @@
 //! Why a command could not be carried out: its words and its exit code.
 
+use cloth_fit::error::Error;
 use std::error::Error as _;
 use std::io;
 
@@ -7,13 +8,13 @@ use std::io;
 #[derive(Debug)]
 pub enum Failure {
     /// A measurement, a setting or a file.
-    Fit(cloth_fit::error::Error),
+    Fit(Error),
     /// Standard output could not be written.
     Output(io::Error),
 }
 
-impl From<cloth_fit::error::Error> for Failure {
-    fn from(error: cloth_fit::error::Error) -> Self {
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
         Self::Fit(error)
     }
 }
@@ -28,7 +29,7 @@ impl Failure {
     /// 1 where the operating system refused, 3 where the input is bad.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Output(_) | Self::Fit(cloth_fit::error::Error::Io { .. }) => 1,
+            Self::Output(_) | Self::Fit(Error::Io { .. }) => 1,
             Self::Fit(_) => 3,
         }
     }
@@ -50,5 +51,15 @@ impl Failure {
             cause = error.source();
         }
         words
+    }
+}
+
+/// Bad input with the option that mends it; other errors as they are.
+pub(crate) fn with_option(error: Error, option: &str) -> Error {
+    match error {
+        Error::Input { path, line, field, found, expected } => {
+            Error::Input { path, line, field, found, expected: format!("{expected} ({option})") }
+        }
+        other => other,
     }
 }

@@ -3,6 +3,7 @@
 //! Whoever writes holds one lock, and an interruption takes it first: so what is being written is finished before the
 //! program ends, or was never begun.
 
+use crate::failure::with_option;
 use cloth_fit::error::Error;
 use cloth_fit::store::{OutputFolder, Recalled};
 use serde::Serialize;
@@ -37,7 +38,7 @@ impl Output {
     /// As [`OutputFolder::claim`].
     pub fn claim(path: &Path) -> Result<Self, Error> {
         let mut making = making();
-        making.push(OutputFolder::claim(path)?);
+        making.push(OutputFolder::claim(path).map_err(|error| with_option(error, "--out"))?);
         Ok(Self { path: path.to_path_buf() })
     }
 

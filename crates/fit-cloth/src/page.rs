@@ -10,7 +10,7 @@ pub use fit::{Fit, Frames};
 
 use cloth_fit::error::{Error, Result};
 use cloth_fit::io::read_json;
-use cloth_fit::store::write_file;
+use cloth_fit::store::{refuse_link, write_file};
 use minijinja::{AutoEscape, Environment, context};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -101,10 +101,12 @@ impl Page {
     /// Writes the page alone, and says where.
     ///
     /// # Errors
-    /// What the operating system refuses.
+    /// Something else than a file in its place; what the operating system refuses.
     pub fn write_again(&self, folder: &Path) -> Result<PathBuf> {
+        let page = folder.join(PAGE);
+        refuse_link(&page)?;
         self.write_html(folder, &self.data())?;
-        Ok(folder.join(PAGE))
+        Ok(page)
     }
 
     /// The text of `report.json`.

@@ -19,7 +19,7 @@ pub use simulation::simulation;
 pub use stage::{course, stage};
 pub use study::{study, study_page};
 pub use summary::{as_published, missing, summary, summary_rows};
-pub use validation::validation;
+pub use validation::{other_grid, validation};
 pub use verdict::{verdict, verdict_of_fit};
 
 use cloth_fit::curve_file::Kind;

@@ -130,7 +130,7 @@ fn what_is_given_is_not_fitted() {
     assert!(!path.join("second/curves/stretch-weft.csv").exists());
     for (more, words) in [
         (&["--model", "springs"][..], "model: found stvk, expected springs"),
-        (&["--compression", "none"], "compression"),
+        (&["--compression", "none"], "(--compression zero-strain, or another --known)"),
         (&["--out", "first"], "another --out"),
     ] {
         let out = if more[0] == "--out" { "first" } else { "third" };
@@ -142,6 +142,41 @@ fn what_is_given_is_not_fitted() {
     }
     let output = fit("fit", &path, "third", &["--known", "second/residuals.csv"]);
     assert_eq!(output.status.code(), Some(3));
+}
+
+#[test]
+fn a_set_without_the_tests_that_a_command_is_about_is_refused() {
+    let (_keep, path) = folder();
+    assert!(fit("fit", &path, "known", &["--variant", "linear"]).status.success());
+    let refused = |command: &str, more: &[&str], words: &str| {
+        let output = fit(command, &path, "out", more);
+        let [text, errors] = said(&output);
+        assert_eq!((output.status.code(), &text[..]), (Some(3), ""), "{command} {more:?}: {errors}");
+        assert!(
+            errors.contains(words) && errors.contains("(fit-cloth fit takes what a set has)"),
+            "{errors}"
+        );
+        assert!(!path.join("out").exists() && !path.join(".out.work").exists());
+    };
+    let known = ["--known", "known/material.json"];
+    fs::remove_dir_all(path.join("set/shear")).unwrap();
+    for more in [&[][..], &known] {
+        let words = "found stretch-weft, stretch-warp, bend-weft, bend-warp, complex-shear, expected a sequence of kind \
+                     stretch-bias or shear";
+        refused("shear", more, words);
+    }
+    // One of the bending tests is enough; without any there is nothing to bend.
+    fs::remove_dir_all(path.join("set/bend-warp")).unwrap();
+    assert!(fit("bend", &path, "bent", &["--variant", "linear"]).status.success());
+    fs::remove_dir_all(path.join("set/bend-weft")).unwrap();
+    for more in [&[][..], &known] {
+        refused("bend", more, "expected a sequence of kind bend-weft or bend-warp or bend-bias");
+    }
+    assert!(fit("fit", &path, "rest", &["--variant", "linear"]).status.success());
+    ["stretch-weft", "stretch-warp"]
+        .iter()
+        .for_each(|name| fs::remove_dir_all(path.join("set").join(name)).unwrap());
+    refused("stretch", &[], "found complex-shear, expected a sequence of kind stretch-weft or stretch-warp");
 }
 
 #[test]

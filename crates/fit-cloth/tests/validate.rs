@@ -2,6 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+use cloth_fit::frame::Kind;
+use cloth_fit::io::read_set;
+use cloth_fit::prediction::predict;
+use cloth_fit::stage::{Settings, Watch};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::material::{Component, Compression, Model};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -39,9 +45,114 @@ fn fitted() -> &'static Path {
     path
 }
 
+/// On the grid of the fit.
 fn validate(set: &str, out: &Path, more: &[&str]) -> Output {
     let material = fitted().join("material.json");
-    run(&[&["validate", set, "--material", text(&material), "--out", text(out)], more].concat())
+    run(&[&["validate", set, "--material", text(&material), "--out", text(out)], &COARSE[..2], more].concat())
+}
+
+/// Imports a strip cut on the bias into a set of that name, pulled in even steps to a tenth by some forces; the set.
+fn bias_strip(folder: &Path, name: &str, [length, width]: [f64; 2], forces: &[f64]) -> PathBuf {
+    let [table, set] = [format!("{name}.csv"), name.to_string()].map(|name| folder.join(name));
+    let row = |(i, force)| format!("{},{force}\n", 0.1 * length * (i + 1) as f64 / forces.len() as f64);
+    let rows: String = forces.iter().enumerate().map(row).collect();
+    fs::write(&table, format!("pull_m,force_N\n0,0\n{rows}")).unwrap();
+    let [length, width] = [length, width].map(|side| side.to_string());
+    let output = run(&[
+        &[
+            "import",
+            "strip",
+            text(&table),
+            "--set",
+            text(&set),
+            "--name",
+            "made",
+            "--areal-density-kg-m2",
+            "0.2",
+        ],
+        &["--direction", "bias", "--gauge-m", &length, "--width-m", &width, "--replace"][..],
+        &["--displacement", "pull_m", "--force", "force_N"],
+    ]
+    .concat());
+    assert!(output.status.success(), "{}", said(&output)[1]);
+    set
+}
+
+/// The same for a cloth of stiff yarns and a constant shear stiffness, each strip simulated on its own grid.
+fn cloth_on_the_bias(folder: &Path, name: &str, size: [f64; 2]) -> PathBuf {
+    let set = read_set(&bias_strip(folder, name, size, &[1.0; 8])).unwrap();
+    let stiffnesses =
+        [(Component::StretchWeft, 2e4), (Component::StretchWarp, 2e4), (Component::Shear, 40.0)];
+    let curve = |(component, stiffness)| {
+        let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+        (component, StiffnessCurve::constant(stiffness, negative).unwrap())
+    };
+    let curves = stiffnesses.into_iter().map(curve).collect();
+    let found = predict(
+        &set,
+        &[Kind::StretchBias],
+        &curves,
+        &Default::default(),
+        &Settings::default(),
+        &Watch::default(),
+    )
+    .unwrap();
+    let rows = &found.sequences[0].forces;
+    let forces: Vec<f64> = rows.iter().map(|row| row.world.x * row.simulated).collect();
+    bias_strip(folder, name, size, &forces)
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Residual of the forces of a set's only sequence as a fit, or a validation, writes it.
+fn force_rms(path: &Path, sequences: &str) -> f64 {
+    json(path)[sequences][0]["rms_force_n"].as_f64().unwrap()
+}
+
+#[test]
+fn a_strip_of_other_proportions_has_a_grid_of_its_own_and_is_met_as_by_its_own_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    let [narrow, wide] = [("narrow", [0.2, 0.05]), ("wide", [0.1, 0.05])]
+        .map(|(name, size)| cloth_on_the_bias(folder.path(), name, size));
+    let fit = |set: &Path| {
+        let out = set.with_extension("fit");
+        let output = run(&["shear", text(set), "--points", "1", "--out", text(&out)]);
+        assert!(output.status.success(), "{}", said(&output)[1]);
+        out.join("material.json")
+    };
+    let [of_narrow, of_wide] = [&narrow, &wide].map(|set| fit(set));
+    let nodes = |material: &Path| json(material)["provenance"]["nodes"]["stretch-bias"].clone();
+    assert_ne!(nodes(&of_narrow), nodes(&of_wide));
+    let out = folder.path().join("out");
+    let output = run(&["validate", text(&wide), "--material", text(&of_narrow), "--out", text(&out)]);
+    let [words, errors] = said(&output);
+    assert!(output.status.success(), "{errors}");
+    let largest = json(&out.join("validation.json"))["sequences"][0]["largest_force_n"].as_f64().unwrap();
+    let [alone, other] =
+        [force_rms(&of_wide, "residuals"), force_rms(&out.join("validation.json"), "sequences")];
+    // Either fit has assumed yarns of its own. Cells of the other strip's shape would lock, and miss by as much again.
+    assert!((other - alone).abs() < 0.02 * largest, "{alone} {other} of {largest}: {words}");
+}
+
+#[test]
+fn what_shear_made_of_a_strip_on_the_bias_alone_meets_that_strip() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = cloth_on_the_bias(folder.path(), "set", [0.1, 0.05]);
+    let [fit, out] = ["fit", "out"].map(|name| folder.path().join(name));
+    let output = run(&["shear", text(&set), "--out", text(&fit)]);
+    assert!(output.status.success(), "{}", said(&output)[1]);
+    let material = fit.join("material.json");
+    let output = run(&["validate", text(&set), "--material", text(&material), "--out", text(&out)]);
+    let [words, errors] = said(&output);
+    assert!(output.status.success(), "{errors}");
+    assert!(words.contains("assumed constant, since not known: stretch-weft, stretch-warp"), "{words}");
+    let validation = out.join("validation.json");
+    assert_eq!(json(&validation)["assumed"], serde_json::json!(["stretch-weft", "stretch-warp"]));
+    let largest = json(&validation)["sequences"][0]["largest_force_n"].as_f64().unwrap();
+    let [alone, again] = [force_rms(&material, "residuals"), force_rms(&validation, "sequences")];
+    assert!((again - alone).abs() < 1e-3 * largest, "{alone} {again} of {largest}: {words}");
 }
 
 #[test]
@@ -113,14 +224,14 @@ fn what_cannot_be_validated_is_refused() {
     };
     refused(validate(&denim, fitted(), &[]), "another --out");
     refused(validate(&denim, &Path::new(&denim).join("result"), &[]), "outside the measurement set");
-    refused(validate(&denim, &out, &["--kinds", "stretch-bias"]), "kind");
+    refused(validate(&denim, &out, &["--kinds", "stretch-bias"]), "stretch-bias (--kinds, --all)");
     refused(
         run(&["validate", &denim, "--material", &format!("{denim}/fabric.toml"), "--out", text(&out)]),
         "fabric.toml",
     );
     fs::create_dir(&out).unwrap();
     fs::write(out.join("notes.txt"), "mine").unwrap();
-    refused(validate(&denim, &out, &[]), "other things");
+    refused(validate(&denim, &out, &[]), "--out: found a folder with other things in it, such as notes.txt");
     assert_eq!(validate(&denim, &out, &["--kinds", "silk"]).status.code(), Some(2));
 }
 
@@ -165,4 +276,26 @@ fn all_models_and_shared_curves() {
     let valid =
         run(&["validate", &denim, "--material", text(&material), "--out", text(&folder.path().join("v"))]);
     assert!(valid.status.success(), "{}", said(&valid)[1]);
+}
+
+#[test]
+fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let [fit, out] = ["fit", "out"].map(|name| folder.path().join(name));
+    let denim = fixture("cotton-denim");
+    let output = run(&[&["bend", &denim, "--model", "springs", "--out", text(&fit)], &COARSE[..]].concat());
+    assert!(output.status.success(), "{}", said(&output)[1]);
+    let material = fit.join("material.json");
+    let validate = |more: &[&str]| {
+        let output = run(&[
+            &["validate", &denim, "--kinds", "bend-warp", "--material", text(&material), "--out", text(&out)],
+            more,
+        ]
+        .concat());
+        assert!(output.status.success(), "{}", said(&output)[1]);
+        said(&output)[1].clone()
+    };
+    let warning =
+        "warning: bending of springs belongs to the grid of its fit, 13x13; --nodes tries bend-warp on it\n";
+    assert_eq!([validate(&[]), validate(&COARSE[..2])], [warning, ""]);
 }

@@ -28,7 +28,7 @@ use crate::knowledge::Knowledge;
 use crate::prediction::{Prediction, predict};
 use crate::report::StageReport;
 use crate::stage::{Settings, Variant, Watch};
-use cloth_sim::material::{Component, Curves, Model};
+use cloth_sim::material::{Component, Model};
 use serde::{Deserialize, Serialize};
 
 /// Tests that no stage fits.
@@ -103,7 +103,7 @@ pub fn run(
         true => leave_out::each(set, &report, settings, watch),
         false => Vec::new(),
     };
-    let validation = validation(set, report.curves(), settings, watch)?;
+    let validation = validation(set, &report, settings, watch)?;
     let sum = |count: fn(&StageReport) -> usize| report.stages.iter().map(count).sum();
     let row = Row {
         model: settings.model,
@@ -164,15 +164,15 @@ impl Row {
 /// Without a stretch curve a sheet has no shape to predict.
 fn validation(
     set: &MeasurementSet,
-    curves: &Curves,
+    report: &FitReport,
     settings: &Settings,
     watch: &Watch<'_>,
 ) -> Result<Option<Prediction>> {
     let any = set.sequences.iter().any(|sequence| VALIDATION.contains(&sequence.kind));
-    if !any || !curves.components().any(Component::is_stretch) {
+    if !any || !report.curves().components().any(Component::is_stretch) {
         return Ok(None);
     }
-    Ok(Some(predict(set, &VALIDATION, curves, settings, watch)?))
+    Ok(Some(predict(set, &VALIDATION, report.curves(), &report.assumed(), settings, watch)?))
 }
 
 fn observed(report: &FitReport) -> impl Iterator<Item = &StageReport> {

@@ -12,10 +12,11 @@ use crate::error::Result;
 use crate::frame::{Kind, MeasurementSet};
 use crate::inspection::{Inspection, Notice, inspect};
 use crate::knowledge::Knowledge;
-use crate::report::{Level, SequenceReport, StageReport};
+use crate::report::{Basis, Level, SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
 use cloth_sim::material::{Component, Curves, Model};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A stage of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -123,6 +124,11 @@ impl FitReport {
     /// The curves that were observed or given.
     pub fn curves(&self) -> &Curves {
         self.knowledge.curves()
+    }
+
+    /// The stiffnesses that were assumed of what nobody measured: [`Basis::all_assumed`].
+    pub fn assumed(&self) -> BTreeMap<Component, f64> {
+        Basis::all_assumed(|component| self.stage(component).map(|stage| &stage.basis))
     }
 
     /// Every curve that was observed came to its minimum.

@@ -15,6 +15,7 @@ use crate::incremental::{Failure, FitReport};
 use crate::inspection::Notice;
 use crate::io::json_file::{parse_version, unique};
 use crate::io::read_text;
+use crate::report::Basis;
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -177,6 +178,11 @@ impl MaterialFile {
     /// Control points that make no curve.
     pub fn curves(&self) -> Result<Curves> {
         self.named_curves().map_err(|defect| defect.at(Path::new("material.json"), ""))
+    }
+
+    /// The stiffnesses that the fit assumed of what nobody measured: [`Basis::all_assumed`].
+    pub fn assumed(&self) -> BTreeMap<Component, f64> {
+        Basis::all_assumed(|component| self.curves.get(&component)?.basis.as_ref())
     }
 
     fn named_curves(&self) -> std::result::Result<Curves, Defect> {

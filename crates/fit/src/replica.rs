@@ -10,13 +10,13 @@ mod table;
 use crate::error::{Error, Result};
 use crate::frame::{Kind, Phase, Sequence};
 use crate::placement::in_place;
-use crate::specimen::{FLAT_SLOPE, Specimen};
+use crate::specimen::{FLAT_SLOPE, Specimen, near_square};
 use blend::Blend;
 use clips::Grip;
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Model};
-use cloth_sim::mesh::Diagonals;
+use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use table::{Lines, Overhang};
@@ -408,10 +408,14 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
     if model != Model::Springs || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
         return Ok(());
     }
+    let Grid { width, height, diagonals, .. } = specimen.grid;
+    let [columns, rows] = near_square(width, height, diagonals);
     Err(bad_geometry(
         sequence,
         format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
-        "cells at most 2.4 times as long as wide (choose the nodes by the specimen's sides)",
+        &format!(
+            "cells at most 2.4 times as long as wide: nodes by the specimen's sides, as {columns}x{rows}"
+        ),
     ))
 }
 

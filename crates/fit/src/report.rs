@@ -11,6 +11,7 @@ use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Model};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A fitted curve with its uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -190,7 +191,7 @@ impl Level {
 }
 
 /// What a stage took as known.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Basis {
     /// Components fitted before, whose errors the bands carry on.
@@ -202,6 +203,24 @@ pub struct Basis {
     /// Components that nobody measured: a constant stiffness was assumed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Component>,
+    /// That stiffness, N/m (bending: N·m per the model's own strain). Files of former versions lack it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub assumed_stiffness: BTreeMap<Component, f64>,
+}
+
+impl Basis {
+    /// The stiffnesses that a fit has assumed of what nobody measured, given the basis of each of its curves; where its
+    /// stages differ that of shear, which depends on it most.
+    pub fn all_assumed<'a>(of: impl Fn(Component) -> Option<&'a Self>) -> BTreeMap<Component, f64> {
+        let mut all = BTreeMap::new();
+        let others = Component::ALL.into_iter().filter(|component| *component != Component::Shear);
+        for basis in std::iter::once(Component::Shear).chain(others).filter_map(of) {
+            for (&component, &stiffness) in &basis.assumed_stiffness {
+                all.entry(component).or_insert(stiffness);
+            }
+        }
+        all
+    }
 }
 
 /// A stage of the fit: one curve.

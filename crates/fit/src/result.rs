@@ -7,6 +7,7 @@ pub use validation::write_validation;
 
 use crate::error::{Error, Result};
 use crate::incremental::FitReport;
+use crate::io::shown;
 use crate::material_file::MaterialFile;
 use crate::store::write_file;
 use cloth_sim::material::Model;
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several, or what a
 /// comparison, a validation, a study or a simulation writes. Hidden files do not count.
 pub fn check_output(folder: &Path) -> Result<()> {
-    let refuse = |found: &str| {
+    let refuse = |found: String| {
         Err(Error::input(
             folder,
             None,
@@ -31,7 +32,7 @@ pub fn check_output(folder: &Path) -> Result<()> {
         return Ok(());
     }
     if !folder.is_dir() {
-        return refuse("a file");
+        return refuse("a file".into());
     }
     std::fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
     let name =
@@ -63,7 +64,10 @@ pub fn check_output(folder: &Path) -> Result<()> {
     if is_other || is_result(folder) || are_models {
         return Ok(());
     }
-    refuse("a folder with other things in it")
+    // What no fit writes says most.
+    let names: Vec<String> = entries.iter().map(|path| name(path)).collect();
+    let other = names.iter().find(|name| !WRITTEN.contains(&&name[..])).or(names.first());
+    refuse(format!("a folder with other things in it, such as {}", shown(other.map_or("", |name| name))))
 }
 
 /// What stands in a result folder.

@@ -112,7 +112,7 @@ fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2]
 }
 
 /// Columns and rows that make cells near square, with about as many nodes as 25×25: crossed cells have one more each.
-fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
+pub(crate) fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
     let cells =
         (DEFAULT_CELLS * DEFAULT_CELLS) as f64 / if diagonals == Diagonals::Crossed { 2.0 } else { 1.0 };
     let count = |length: f64, side: f64| (length / side).round().max(2.0);

@@ -16,7 +16,7 @@ pub mod stretch;
 
 pub use course::{Plan, fit};
 pub use start::FirstStiffness;
-pub(crate) use start::softest_bending;
+pub(crate) use start::{softest_bending, unyielding};
 
 use crate::error::{Error, Result};
 use crate::frame::Kind;

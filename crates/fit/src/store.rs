@@ -6,6 +6,7 @@
 mod journal;
 mod lock;
 mod output;
+mod work;
 
 pub use journal::Recalled;
 pub use output::OutputFolder;
@@ -15,7 +16,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes a whole file, replacing the old one if there is one.
+/// Writes a whole file, replacing the old one if there is one. A link is followed: what it leads to is replaced.
 ///
 /// # Errors
 /// The path names something that is not a regular file, or the operating system refuses.
@@ -50,10 +51,25 @@ pub fn replace_folder(path: &Path, build: impl FnOnce(&Path) -> Result<()>) -> R
     OutputFolder::claim(path)?.replace(build)
 }
 
+/// Refuses a link where a file is to be written into a folder of results: only the path that somebody names is followed.
+///
+/// # Errors
+/// A link.
+pub fn refuse_link(path: &Path) -> Result<()> {
+    if path.is_symlink() {
+        return Err(Error::input(path, None, "file", "a link", "a regular file to replace, or nothing"));
+    }
+    Ok(())
+}
+
 /// Where the path leads, links followed; `None` if nothing is there.
 fn existing_target(path: &Path) -> Result<Option<PathBuf>> {
     match fs::canonicalize(path) {
         Ok(target) => Ok(Some(target)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound && path.is_symlink() => {
+            let expected = "one that leads to what is to be replaced, or nothing: remove the link";
+            Err(Error::input(path, None, "file", "a link that leads nowhere", expected))
+        }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Error::io(path, error)),
     }

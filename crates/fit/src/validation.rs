@@ -11,8 +11,9 @@ use crate::prediction::{Prediction, predict};
 use crate::report::{ForceRow, SequenceReport};
 use crate::specimen::rest_normal;
 use crate::stage::{Settings, Watch};
-use cloth_sim::material::Curves;
+use cloth_sim::material::{Component, Curves};
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// A measure of a whole frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -126,6 +127,7 @@ impl Validation {
 /// Predicts sequences of a set, and measures them as wholes.
 ///
 /// * `kinds` — which tests; all others are left out
+/// * `assumed` — as in [`predict`]
 ///
 /// # Errors
 /// As [`predict`].
@@ -133,10 +135,11 @@ pub fn validate(
     set: &MeasurementSet,
     kinds: &[Kind],
     curves: &Curves,
+    assumed: &BTreeMap<Component, f64>,
     settings: &Settings,
     watch: &Watch<'_>,
 ) -> Result<Validation> {
-    let prediction = predict(set, kinds, curves, settings, watch)?;
+    let prediction = predict(set, kinds, curves, assumed, settings, watch)?;
     let validated = |report: &SequenceReport| {
         let sequence = set.sequences.iter().find(|sequence| sequence.name == report.name);
         let measure = Measure::of(report.kind).zip(sequence);

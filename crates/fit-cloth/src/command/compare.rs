@@ -16,8 +16,8 @@ use std::io::Write;
 
 const EXAMPLE: &str = "\
 Example:
-  fit-cloth compare fixtures/cotton-denim --nodes 9x9 --out out
-  fit-cloth compare fixtures/cotton-denim --nodes 9x9 --leave-one-out --out out
+  fit-cloth compare fixtures/cotton-denim --nodes 9x9 --out out/compared
+  fit-cloth compare fixtures/cotton-denim --nodes 9x9 --leave-one-out --out out/left-out
 
 Writes compare.csv and compare.json, best first, and report.html with all models on the same plots. What ranks: the
 residual on sequences of kind complex-shear and corner-pull, which no fit sees; else that on sequences left out one at
@@ -57,8 +57,8 @@ struct Shown {
 pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (set, out) = options.on.open("-compare")?;
     let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).collect();
-    if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
-        return Err(fit::nothing(&options.on.set, &set, &kinds));
+    if !fit::has_any(&set, &kinds) {
+        return Err(fit::nothing(&options.on.set, &set, &kinds).into());
     }
     let contestants = compare::contestants(&options.how.settings(&options.on));
     let key =

@@ -2,7 +2,7 @@
 
 use super::goal::Goal;
 use super::{Outcome, program, recalled, warn, warn_of_defects};
-use crate::failure::Failure;
+use crate::failure::{Failure, with_option};
 use crate::options::{FitFlags, Telling, refuse_within};
 use crate::output::Output;
 use crate::page::{Fit, Frames, Page};
@@ -16,8 +16,9 @@ use cloth_fit::incremental::{self, Finished, FitReport, Memory};
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_result;
-use cloth_sim::material::Model;
+use cloth_sim::material::{Compression, Model};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
@@ -38,6 +39,11 @@ pub fn run(
     output: &mut impl Write,
 ) -> Result<Outcome, Failure> {
     let (set, out) = flags.on.open("")?;
+    let tests = goal.tests();
+    if !tests.is_empty() && !has_any(&set, &tests) {
+        let error = nothing(&flags.on.set, &set, &tests);
+        return Err(with_option(error, "fit-cloth fit takes what a set has").into());
+    }
     let models = flags.model.models();
     let given = flags.known.as_deref().map(|path| read_known(path, out.path(), flags)).transpose()?;
     let finished = recall(goal, &set, flags, given.as_ref(), &out, telling)?;
@@ -98,19 +104,26 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     }
     for settings in flags.model.models().into_iter().map(|model| flags.settings(model)) {
         if file.model != settings.model {
-            return refuse("model", file.model.to_string(), format!("{}, as --model says", settings.model));
+            let expected =
+                format!("{}, as --model says (--model {}, or another --known)", settings.model, file.model);
+            return refuse("model", file.model.to_string(), expected);
         }
         if settings.variant.is_isotropic() && !file.variant.is_isotropic() {
-            let expected =
-                format!("one that shares weft's and warp's curves, as --variant {}", settings.variant);
+            let expected = format!(
+                "one that shares weft's and warp's curves, as --variant {} (--variant {}, or another --known)",
+                settings.variant, file.variant
+            );
             return refuse("variant", file.variant.to_string(), expected);
         }
         if file.compression != settings.compression {
-            return refuse(
-                "compression",
-                format!("{:?}", file.compression),
-                "the same as --compression".into(),
-            );
+            let [found, asked] =
+                [file.compression, settings.compression].map(|compression| match compression {
+                    Compression::ZeroStrain => "zero-strain",
+                    Compression::None => "none",
+                });
+            let expected =
+                format!("{asked}, as --compression says (--compression {found}, or another --known)");
+            return refuse("compression", found.into(), expected);
         }
     }
     Ok(file)
@@ -153,25 +166,31 @@ fn fit_model(
     progress.finish();
     let report = report?;
     if report.stages.is_empty() {
-        return Err(nothing(&flags.on.set, set, &goal.kinds(&known)));
+        return Err(nothing(&flags.on.set, set, &goal.kinds(&known)).into());
     }
     let material = MaterialFile::new(set, &settings, &report, given);
     Ok(Fitted { report, material })
 }
 
+/// True if a set has a sequence of one of some kinds.
+pub(super) fn has_any(set: &MeasurementSet, kinds: &[Kind]) -> bool {
+    set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind))
+}
+
 /// No sequence of a set is of the kinds that are wanted.
-pub(super) fn nothing(path: &Path, set: &MeasurementSet, kinds: &[Kind]) -> Failure {
+pub(super) fn nothing(path: &Path, set: &MeasurementSet, kinds: &[Kind]) -> Error {
     let names =
         |kinds: &mut dyn Iterator<Item = Kind>| kinds.map(|kind| kind.to_string()).collect::<Vec<_>>();
-    let found = match set.sequences.len() {
-        0 => "no sequence at all".to_string(),
-        _ => names(&mut set.sequences.iter().map(|sequence| sequence.kind)).join(", "),
+    let present: BTreeSet<Kind> = set.sequences.iter().map(|sequence| sequence.kind).collect();
+    let found = match present.is_empty() {
+        true => "no sequence at all".to_string(),
+        false => names(&mut present.into_iter()).join(", "),
     };
     let expected = match names(&mut kinds.iter().copied()).join(" or ") {
         kinds if kinds.is_empty() => "a --known file that lacks a curve".into(),
         kinds => format!("a sequence of kind {kinds}"),
     };
-    Error::input(path, None, "kind", found, expected).into()
+    Error::input(path, None, "kind", found, expected)
 }
 
 /// * `several` — models: each has a folder of its own, and all share a page

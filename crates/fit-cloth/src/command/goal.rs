@@ -3,37 +3,39 @@
 use cloth_fit::frame::Kind;
 use cloth_fit::incremental::Stage;
 use cloth_fit::knowledge::Knowledge;
+use cloth_fit::stage::kinds_of_all;
 use cloth_sim::material::Component;
 
 /// The example of `fit-cloth stretch`.
 pub const STRETCH_EXAMPLE: &str = "\
 Example:
-  fit-cloth stretch fixtures/cotton-denim --out out
-  fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out
+  fit-cloth stretch fixtures/cotton-denim --out out/stretch
+  fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out/models
 
 Writes material.json, curves/*.csv, residuals.csv, forces.csv and plots/*.svg; with --model all, a folder for each model.";
 
 /// The example of `fit-cloth shear`.
 pub const SHEAR_EXAMPLE: &str = "\
 Example:
-  fit-cloth shear fixtures/cotton-denim --out out
+  fit-cloth shear fixtures/cotton-denim --out out/shear
 
-Uses sequences of kind shear and stretch-bias; without them only the stretch curves are fitted, and a warning says so.
+Uses sequences of kind shear and stretch-bias; a set without either is refused.
 With --known FILE the stretch curves of a former fit are taken from its material.json.";
 
 /// The example of `fit-cloth bend`.
 pub const BEND_EXAMPLE: &str = "\
 Example:
-  fit-cloth bend fixtures/cotton-denim --out out
+  fit-cloth bend fixtures/cotton-denim --out out/bend
 
-Uses sequences of kind bend-weft, bend-warp and bend-bias; what a set lacks is not fitted, and a warning says so.
+Uses sequences of kind bend-weft, bend-warp and bend-bias; of those that a set lacks the curve is not fitted, and a warning
+says so. A set without any of them is refused.
 With --known FILE the stretch and shear curves of a former fit are taken from its material.json.";
 
 /// The example of `fit-cloth fit`.
 pub const FIT_EXAMPLE: &str = "\
 Example:
-  fit-cloth fit fixtures/cotton-denim --out out
-  fit-cloth fit fixtures/cotton-denim --variant linear --robust --verbose --out out
+  fit-cloth fit fixtures/cotton-denim --out out/fit
+  fit-cloth fit fixtures/cotton-denim --variant linear --robust --verbose --out out/linear
 
 Fits stretch, shear and bending in this order, then shear and bending once more. What a set lacks is not fitted, and a
 warning says so. Stopped by Ctrl-C or otherwise, the same command goes on after the curves that were finished.";
@@ -69,6 +71,11 @@ impl Goal {
             Self::Bend => Stage::Bend.components(),
             Self::All => &[],
         }
+    }
+
+    /// The tests that it is about, without which there is nothing to fit; none where it takes what a set shows.
+    pub fn tests(self) -> Vec<Kind> {
+        kinds_of_all(self.anew())
     }
 
     /// The curves that there should be in the end.

@@ -1,7 +1,7 @@
 //! `fit-cloth validate`: fitted curves on motions and samples that the fit did not see.
 
-use super::{Outcome, fit, tell, warn_of_defects};
-use crate::failure::Failure;
+use super::{Outcome, fit, tell, warn, warn_of_defects};
+use crate::failure::{Failure, with_option};
 use crate::options::{SetFlags, Telling, parse_kind, refuse_within};
 use crate::plot::write_validation_plots;
 use crate::progress::Progress;
@@ -15,7 +15,7 @@ use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_validation;
 use cloth_fit::stage::Settings;
 use cloth_fit::validation::validate;
-use cloth_sim::material::{Component, Curves};
+use cloth_sim::material::Curves;
 use serde_json::Value;
 use std::io::Write;
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ pub struct ValidateOptions {
     /// On what, and where to.
     #[command(flatten)]
     pub on: SetFlags,
-    /// The material.json whose curves are tried; the grid is that of its fit, unless --nodes says otherwise
+    /// The material.json whose curves are tried
     #[arg(long, value_name = "FILE")]
     pub material: PathBuf,
     /// The tests to try them on [default: complex-shear and corner-pull, which no fit uses; all, if a set has neither]
@@ -60,12 +60,13 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     let material = MaterialFile::read(&options.material)?;
     let curves = curves(options, &material)?;
     let kinds = options.kinds_of(&set);
-    if !set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind)) {
-        return Err(fit::nothing(&options.on.set, &set, &kinds));
+    if !fit::has_any(&set, &kinds) {
+        return Err(with_option(fit::nothing(&options.on.set, &set, &kinds), "--kinds, --all").into());
     }
     warn_of_defects(telling, &options.material.display().to_string(), &check_material(&material)?);
     let progress = Progress::new("validating", !telling.quiet);
-    let validation = validate(&set, &kinds, &curves, &options.settings(&material), &progress.watch());
+    let validation =
+        validate(&set, &kinds, &curves, &material.assumed(), &options.settings(&material), &progress.watch());
     progress.finish();
     let validation = validation?;
     let mut json = String::new();
@@ -75,17 +76,20 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     })?;
     let text = text::validation(&set, &material, &validation);
     let text = format!("{text}\nWritten to {}", out.path().display());
+    if let Some(warning) = text::other_grid(&material, &validation) {
+        warn(telling, &warning);
+    }
     tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
     Ok(if validation.lost().is_empty() { Outcome::Done } else { Outcome::NotConverged })
 }
 
-/// The observed curves; without one of stretch a sheet has no shape to predict.
+/// The observed curves.
 fn curves(options: &ValidateOptions, material: &MaterialFile) -> Result<Curves, Failure> {
     let curves = material.curves()?;
-    if curves.components().any(Component::is_stretch) {
+    if curves.components().next().is_some() {
         return Ok(curves);
     }
-    let (found, expected) = ("no stretch curve", "that of weft or warp at least");
+    let (found, expected) = ("no observed curve", "one at least (another --material)");
     Err(Error::input(&options.material, None, "curves", found, expected).into())
 }
 
@@ -102,7 +106,7 @@ impl ValidateOptions {
         }
     }
 
-    /// Model and grid of the fit that the curves come from.
+    /// The model of the fit that the curves come from; the grid belongs to the specimen.
     fn settings(&self, material: &MaterialFile) -> Settings {
         let defaults = Settings::default();
         Settings {
@@ -110,17 +114,10 @@ impl ValidateOptions {
             variant: material.variant,
             compression: material.compression,
             diagonals: material.provenance.diagonals.unwrap_or(defaults.diagonals),
-            nodes: self.on.nodes.or_else(|| nodes_of_fit(material)),
+            nodes: self.on.nodes,
             ..defaults
         }
     }
-}
-
-/// Columns and rows of the fit, if all its sequences had the same.
-fn nodes_of_fit(material: &MaterialFile) -> Option<[usize; 2]> {
-    let mut all = material.provenance.nodes.values();
-    let first = *all.next()?;
-    all.all(|nodes| *nodes == first).then_some(first)
 }
 
 fn parse_any_kind(name: &str) -> Result<Kind, String> {

@@ -2,14 +2,21 @@
 
 use super::{cell, interventions, list, percent};
 use cloth_fit::frame::MeasurementSet;
-use cloth_fit::material_file::MaterialFile;
+use cloth_fit::material_file::{CurveEntry, MaterialFile};
 use cloth_fit::validation::{Validated, Validation};
+use cloth_sim::material::{Component, Model};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// One row a sequence, frames of several equilibria, and a verdict.
 pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) -> String {
     let (of, on) = (&material.fabric.name, &set.fabric.name);
-    let mut text = format!("curves of {of} ({}) on tests of {on}\n\n{}", material.model, table(validation));
+    let mut text = format!("curves of {of} ({}) on tests of {on}\n", material.model);
+    let assumed = &validation.prediction.assumed;
+    if !assumed.is_empty() {
+        let _ = writeln!(text, "assumed constant, since not known: {}", list(assumed));
+    }
+    let _ = write!(text, "\n{}", table(validation));
     for Validated { report, .. } in &validation.sequences {
         if !report.multi_stable.is_empty() {
             let frames = list(&report.multi_stable);
@@ -18,6 +25,28 @@ pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Va
     }
     let helped = interventions(&validation.prediction.interventions);
     format!("{text}\n{helped}{}\n", verdict(material, validation))
+}
+
+/// A warning where springs that bend were tried on another grid than any of their fit's: their moments belong to it.
+pub fn other_grid(material: &MaterialFile, validation: &Validation) -> Option<String> {
+    let bends = |(component, entry): (&Component, &CurveEntry)| component.is_bending() && entry.observed;
+    if material.model != Model::Springs || !material.curves.iter().any(bends) {
+        return None;
+    }
+    let fitted: BTreeSet<[usize; 2]> = material.provenance.nodes.values().copied().collect();
+    let reports = validation.sequences.iter().map(|sequence| &sequence.report);
+    let others: Vec<&str> = reports
+        .filter(|report| !report.planar && !fitted.contains(&report.nodes))
+        .map(|report| &report.name[..])
+        .collect();
+    let size = |[columns, rows]: &[usize; 2]| format!("{columns}x{rows}");
+    (!others.is_empty() && !fitted.is_empty()).then(|| {
+        format!(
+            "bending of springs belongs to the grid of its fit, {}; --nodes tries {} on it",
+            list(fitted.iter().map(size)),
+            list(&others)
+        )
+    })
 }
 
 fn table(validation: &Validation) -> String {

@@ -166,7 +166,8 @@ fn buckled(row: &mut Row, model: Model, (stiffness, side): (f64, f64), thin: f64
         curves.set(component, StiffnessCurve::constant(constant, negative).unwrap());
     }
     let settings = Settings { nodes: Some([9, 9]), ..settings(model) };
-    let validation = validate(&set, &[Kind::ComplexShear], &curves, &settings, &Watch::default());
+    let validation =
+        validate(&set, &[Kind::ComplexShear], &curves, &Default::default(), &settings, &Watch::default());
     let found = validation.map(|validation| {
         let report = &validation.sequences[0].report;
         (report.multi_stable.clone(), report.position_rms, validation.prediction.dropped.len())

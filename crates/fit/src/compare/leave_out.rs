@@ -78,7 +78,7 @@ fn predicted(
 ) -> Result<(Distance, Vec<Component>)> {
     let report = incremental::fit(rest, &Stage::ALL, &Knowledge::default(), settings, watch)?;
     let kinds: Vec<Kind> = alone.sequences.iter().map(|sequence| sequence.kind).collect();
-    let prediction = predict(alone, &kinds, report.curves(), settings, watch)?;
+    let prediction = predict(alone, &kinds, report.curves(), &report.assumed(), settings, watch)?;
     Ok((Distance::of_prediction(alone, &prediction), missing(&report)))
 }
 

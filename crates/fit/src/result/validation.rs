@@ -8,7 +8,7 @@ use crate::material_file::{MaterialFile, ResidualEntry};
 use crate::stage::Variant;
 use crate::store::write_file;
 use crate::validation::{Measure, MeasureRow, Validated, Validation};
-use cloth_sim::material::Model;
+use cloth_sim::material::{Component, Model};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
@@ -26,6 +26,8 @@ struct File<'a> {
     /// Whose curves, and whose measurements.
     curves_of: &'a str,
     measured_on: &'a str,
+    #[serde(skip_serializing_if = "<[Component]>::is_empty")]
+    assumed: &'a [Component],
     sequences: Vec<Entry<'a>>,
     without_equilibrium: Vec<Dropped<'a>>,
     equilibria: usize,
@@ -89,6 +91,7 @@ fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) 
         variant: material.variant,
         curves_of: &material.fabric.name,
         measured_on: &set.fabric.name,
+        assumed: &prediction.assumed,
         sequences: validation.sequences.iter().map(|sequence| entry(validation, sequence)).collect(),
         without_equilibrium: dropped
             .map(|d| Dropped { sequence: &d.sequence, frame: d.frame, why: d.status.to_string() })

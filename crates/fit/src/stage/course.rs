@@ -16,6 +16,7 @@ use crate::uncertainty::{Covariance, Scatter};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -121,7 +122,8 @@ pub fn fit(
     let basis = Basis {
         carried: others.groups(uncertain).into_iter().flatten().collect(),
         known: others.curves().components().filter(|c| plan.components.contains(c)).collect(),
-        assumed,
+        assumed: assumed.keys().copied().collect(),
+        assumed_stiffness: assumed,
     };
     let (levels, stopped) = (growth.levels.clone(), growth.stopped.clone());
     let counters = watch.meter.read().since(&spent_before);
@@ -159,11 +161,11 @@ fn gains_from_bending(plan: &Plan, replicas: &[Replica]) -> bool {
 /// stayed flat is the end of that range, and must be well inside it.
 fn ignorance(
     plan: &Plan,
-    assumed: &[Component],
+    assumed: &BTreeMap<Component, f64>,
     first: &StiffnessCurve,
     curve: &StiffnessCurve,
 ) -> Option<DVector<f64>> {
-    let unknown = !plan.flat && plan.fitted[0] == Component::Shear && assumed.iter().any(|c| c.is_bending());
+    let unknown = !plan.flat && plan.fitted[0] == Component::Shear && assumed.keys().any(|c| c.is_bending());
     let apart = curve
         .strains()
         .iter()

@@ -11,6 +11,7 @@ use crate::replica::Replica;
 use crate::simulation::Objective;
 use cloth_sim::curve::{StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Curves, Model};
+use std::collections::BTreeMap;
 
 /// The constant stiffness that a stage starts from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,8 +45,8 @@ pub(super) struct Start {
     pub(super) largest: f64,
     /// What is simulated beside the fitted curve: known, or assumed.
     pub(super) known: Curves,
-    /// Components whose curve nobody measured: they have a constant stiffness.
-    pub(super) assumed: Vec<Component>,
+    /// Components whose curve nobody measured, with the constant stiffness that they have.
+    pub(super) assumed: BTreeMap<Component, f64>,
 }
 
 /// Finds it from forces (equilibrium gap) or from shapes (Peirce's cantilever), or takes a constant.
@@ -71,7 +72,7 @@ pub(super) fn start(
         }
     };
     let mut known = knowledge.without(&plan.fitted).curves().clone();
-    let mut assumed = Vec::new();
+    let mut assumed = BTreeMap::new();
     for &component in &plan.components {
         if plan.fitted.contains(&component) || known.get(component).is_some() {
             continue;
@@ -79,7 +80,7 @@ pub(super) fn start(
         let negative = settings.model.negative_strain(component, settings.compression);
         let constant = assumption(plan, replicas, component, measured, knowledge.curves());
         known.set(component, StiffnessCurve::constant(constant, negative).map_err(mechanics(plan))?);
-        assumed.push(component);
+        assumed.insert(component, constant);
     }
     let largest = match plan.objective {
         Objective::Forces => largest_from_forces(plan, replicas, measured, settings)?,
@@ -103,13 +104,20 @@ fn assumption(
     if component.is_bending() || plan.fitted[0].is_stretch() {
         return stiffness;
     }
-    // A membrane that hardly gives under its own weight, or under the forces of shear.
+    let shear = if plan.fitted[0] == Component::Shear { stiffness } else { 0.0 };
+    unyielding(replicas, component, shear)
+}
+
+/// Stiffness of a membrane that hardly gives under its own weight, or under the forces of shear, N/m: what is assumed of a
+/// stretch or shear curve where the tests are about others.
+///
+/// * `shear` — the shear stiffness, N/m; 0 where nothing is sheared
+pub(crate) fn unyielding(replicas: &[Replica], component: Component, shear: f64) -> f64 {
     let weight = replicas
         .iter()
         .map(|replica| replica.weight.norm() * replica.specimen.grid.width.max(replica.specimen.grid.height))
         .fold(0.0, f64::max);
-    let sheared = if plan.fitted[0] == Component::Shear { 100.0 * stiffness } else { 0.0 };
-    let stretch = f64::max(2000.0 * weight, sheared);
+    let stretch = f64::max(2000.0 * weight, 100.0 * shear);
     if component.is_stretch() { stretch } else { 0.1 * stretch }
 }
 

@@ -7,6 +7,7 @@
 //!
 //! Numbers come back to the bit. A record that was not written to its end, and what follows it, do not count.
 
+use super::work;
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -39,14 +40,13 @@ impl Journal {
     /// Opens a journal, or begins one: a new one too where the old one's key is another.
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// Something else than a journal stands there; the operating system refuses.
     pub(super) fn open<T: DeserializeOwned>(
         path: &Path,
         key: &impl Serialize,
     ) -> Result<(Self, Recalled<T>)> {
         let failed = |source| Error::io(path, source);
-        let opened = File::options().create(true).truncate(false).read(true).write(true).open(path);
-        let mut journal = Self { path: path.to_path_buf(), file: opened.map_err(failed)?, records: 0 };
+        let mut journal = Self { path: path.to_path_buf(), file: work::open(path)?, records: 0 };
         let mut bytes = Vec::new();
         journal.file.read_to_end(&mut bytes).map_err(failed)?;
         let key = Sha256::digest(journal.encoded(key)?);

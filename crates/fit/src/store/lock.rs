@@ -1,32 +1,34 @@
 //! The lock on a work folder. The system gives it back when the run that holds it is gone, however it went.
 
+use super::work;
 use crate::error::{Error, Result};
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Makes a work folder and locks it, for the output folder of a path.
+/// Enters a work folder and locks it, for the output folder of a path.
 ///
 /// # Errors
-/// Another run holds the lock; the operating system refuses.
-pub(super) fn lock(work: &Path, path: &Path) -> Result<File> {
-    let at = work.join("lock");
-    let failed = |source| Error::io(&at, source);
+/// Another run holds the lock; something else stands where the work folder or its lock should; the operating system
+/// refuses.
+pub(super) fn lock(folder: &Path, path: &Path) -> Result<File> {
+    let at = folder.join("lock");
     // A run that ends removes lock and folder: then once more. It cannot end a hundred times.
     for _ in 0..100 {
-        match fs::create_dir(work) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(Error::io(work, error)),
-            _ => {}
-        }
-        let file = match File::options().create(true).truncate(false).write(true).open(&at) {
-            Err(error) if error.kind() == ErrorKind::NotFound => continue,
-            opened => opened.map_err(failed)?,
+        work::enter(folder)?;
+        let file = match work::open(&at) {
+            Err(Error::Io { source, .. })
+                if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) =>
+            {
+                continue;
+            }
+            opened => opened?,
         };
         match file.try_lock() {
             Ok(()) if is_at(&file, &at) => return Ok(file),
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => break,
-            Err(TryLockError::Error(source)) => return Err(failed(source)),
+            Err(TryLockError::Error(source)) => return Err(Error::io(&at, source)),
         }
     }
     let expected = "one run at a time: wait until it has ended, or write to another folder";
@@ -39,7 +41,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     {
         use std::os::unix::fs::MetadataExt;
         let place = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
-        file.metadata().map(place).ok() == fs::metadata(path).map(place).ok()
+        file.metadata().map(place).ok() == fs::symlink_metadata(path).map(place).ok()
     }
     // Elsewhere an open file cannot be removed.
     #[cfg(not(unix))]

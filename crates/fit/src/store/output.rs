@@ -3,17 +3,18 @@
 //! ```text
 //! out/
 //!   denim/            the result: put in place in one step, when all of it is written
-//!   .denim.work/      beside it, while a run makes it
+//!   .denim.work/      beside it, while a run makes it; nobody else can enter it
 //!     lock            held by that run
 //!     new/            what it has written so far
 //!     journal         what it has finished, for a run that goes on from there
 //! ```
 //!
 //! What a killed run leaves in the work folder is cleared by the next one that gets the lock; only the journal is kept.
+//! What no run leaves there, such as a link, is refused.
 
 use super::journal::{Journal, Recalled};
 use super::lock::lock;
-use super::{existing_target, parent, sync_folder};
+use super::{existing_target, parent, sync_folder, work};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -39,7 +40,8 @@ impl OutputFolder {
     /// Claims a folder, which need not exist; makes those above it.
     ///
     /// # Errors
-    /// Another run has claimed it; the path names something that is not a folder; the operating system refuses.
+    /// Another run has claimed it; the path names something that is not a folder; something is planted in the work folder;
+    /// the operating system refuses.
     pub fn claim(path: &Path) -> Result<Self> {
         let old = existing_target(path)?;
         let target = old.clone().unwrap_or_else(|| path.to_path_buf());
@@ -47,21 +49,22 @@ impl OutputFolder {
             let expected = "a folder with a name to replace, or nothing";
             return Err(Error::input(path, None, "folder", "something else", expected));
         };
-        let work =
-            parent(&target).join([".".as_ref(), name, ".work".as_ref()].into_iter().collect::<OsString>());
+        let hidden: OsString = [".".as_ref(), name, ".work".as_ref()].into_iter().collect();
+        let folder = parent(&target).join(hidden);
         let above = MadeFolders::make(&parent(&target))?;
-        let lock = lock(&work, path)?;
-        let folder = Self {
+        let lock = lock(&folder, path)?;
+        work::check(&folder)?;
+        let claimed = Self {
             path: path.to_path_buf(),
             target,
-            work,
+            work: folder,
             journal: None,
             in_place: false,
             _lock: lock,
             _above: above,
         };
-        folder.clear_former()?;
-        Ok(folder)
+        claimed.clear_former()?;
+        Ok(claimed)
     }
 
     /// The folder, as it was named.
@@ -114,7 +117,7 @@ impl OutputFolder {
         build(&new)?;
         let failed = |source| Error::io(&self.path, source);
         sync_folder(&new).map_err(failed)?;
-        let old = fs::symlink_metadata(&self.target).is_ok();
+        let old = existing_target(&self.target)?.is_some();
         let put = |from: &Path, to: &Path| {
             let put = if old { self.exchange(&new) } else { fs::rename(from, to) };
             put.map_err(failed)
@@ -158,6 +161,7 @@ impl OutputFolder {
             fs::rename(&old, &self.target).map_err(|source| Error::io(&self.target, source))?;
         }
         for folder in [new, old].iter().filter(|folder| folder.exists()) {
+            // Links within it are removed, never what they lead to.
             fs::remove_dir_all(folder).map_err(|source| Error::io(folder, source))?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! `fit-cloth import strip`: a tensile machine's table into a sequence.
 
 use crate::command::{Outcome, note_lines_above, tell};
-use crate::failure::Failure;
+use crate::failure::{Failure, with_option};
 use crate::options::Telling;
 use crate::output::whole;
 use clap::{Args, ValueEnum};
@@ -135,7 +135,7 @@ pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) ->
         areal_density: options.areal_density_kg_m2,
         thickness: options.thickness_m,
     };
-    let added = whole(|| add_to_set(&options.set, &sample, &sequence, options.replace))?;
+    let added = whole(|| add_to_set(&options.set, &sample, &sequence, options.replace)).map_err(by_option)?;
     let rows = sequence.frames.len() - 1;
     let [strain, force] = ranges(&sequence, test.gauge);
     let done = match added {
@@ -185,6 +185,22 @@ fn strip_test(options: &StripOptions) -> StripTest {
         force_noise: options.force_noise_n,
         ..defaults
     }
+}
+
+/// Names the option that settles why a sequence cannot be added to the set.
+fn by_option(error: Error) -> Error {
+    let option = match &error {
+        Error::Input { line: None, field, .. } => match field.as_str() {
+            "name" => "--name",
+            "areal_density_kg_m2" => "--areal-density-kg-m2",
+            "thickness_m" => "--thickness-m",
+            "sequence" => "--sequence, --replace",
+            "folder" | "work folder" => "--set",
+            _ => return error,
+        },
+        _ => return error,
+    };
+    with_option(error, option)
 }
 
 /// A table in the folder that is about to be replaced would be lost.
