@@ -8,6 +8,8 @@
 //! A check compares what two measured quantities say of the same thing: weight against the way a sheet sags, clip poses
 //! against the vertices that were seen, forces at the gauge length against rest.
 
+pub(crate) mod pull;
+
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
 use serde::{Deserialize, Serialize};
@@ -78,7 +80,7 @@ impl Inspection {
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 0] = [];
+const CHECKS: [Check; 1] = [pull::check];
 
 /// Runs all checks on all sequences of a set.
 pub fn inspect(set: &MeasurementSet) -> Inspection {
