@@ -113,7 +113,7 @@ fn strip(direction: Direction, largest: f64) -> Sequence {
     let rows = (1..=12).map(|i| format!("{},1\n", largest * f64::from(i) / 12.0));
     std::fs::write(&path, format!("strain,force_N\n{}", rows.collect::<String>())).unwrap();
     let extension = Extension::Strain("strain:1".into());
-    read_strip(&path, &StripTest::new(direction, 0.1, 0.05, extension, "force_N".into())).unwrap()
+    read_strip(&path, &StripTest::new(direction, 0.1, 0.05, extension, "force_N".into())).unwrap().sequence
 }
 
 fn shear_after_stretch(size: Size) {

@@ -102,7 +102,7 @@ impl BiasStrip {
     fn read(&self, table: &Path) -> MeasurementSet {
         let displacement = Extension::Displacement("displacement_mm".into());
         let test = StripTest::new(Direction::Bias, self.length, self.width, displacement, "force_N".into());
-        weightless("glass plain weave", vec![read_strip(table, &test).unwrap()])
+        weightless("glass plain weave", vec![read_strip(table, &test).unwrap().sequence])
     }
 }
 

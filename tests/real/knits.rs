@@ -124,7 +124,7 @@ impl Knit {
                 name: format!("video-{video}"),
                 ..StripTest::new(direction, self.rest_length, self.width, separation, "force_N".into())
             };
-            read_strip(&path, &test).unwrap()
+            read_strip(&path, &test).unwrap().sequence
         })
     }
 

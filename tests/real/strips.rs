@@ -52,7 +52,7 @@ pub(crate) fn import(fabric: &str, strip: &str, direction: Direction) -> Sequenc
         branches: Some(vec![LAST_LOADING]),
         ..StripTest::new(direction, metres("length_m"), metres("width_m"), extension, "force_N".into())
     };
-    read_strip(&data(fabric).join(format!("{strip}.csv")), &test).unwrap()
+    read_strip(&data(fabric).join(format!("{strip}.csv")), &test).unwrap().sequence
 }
 
 /// Fits a strip, prints how, and gives the force residual as a share of the largest force.

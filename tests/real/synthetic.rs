@@ -29,7 +29,7 @@ fn five_points_find_the_stress_of_wool() {
     let path = data("synthetic_frames").join("weft_stretch_100mm.csv");
     let separation = Extension::Separation("clip_separation_m".into());
     let test = StripTest::new(Direction::Weft, 0.1, 0.1, separation, "clip_force_N".into());
-    let set = weightless("wool", vec![read_strip(&path, &test).unwrap()]);
+    let set = weightless("wool", vec![read_strip(&path, &test).unwrap().sequence]);
     let settings = Settings { model: Model::Stvk, ..Settings::default() };
     let report =
         stretch::fit(&set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap();

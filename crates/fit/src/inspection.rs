@@ -12,6 +12,7 @@ mod edge;
 mod failed_points;
 mod poses;
 mod profile;
+pub(crate) mod pull;
 mod sag;
 mod size;
 mod weight;
@@ -87,8 +88,8 @@ impl Inspection {
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 6] =
-    [size::check, failed_points::check, poses::check, weight::check, sag::check, edge::check];
+const CHECKS: [Check; 7] =
+    [size::check, failed_points::check, poses::check, weight::check, sag::check, edge::check, pull::check];
 
 /// Runs all checks on all sequences of a set.
 pub fn inspect(set: &MeasurementSet) -> Inspection {

@@ -9,10 +9,14 @@
 //!           ‹── gauge ───›                         ‹width›
 //! ```
 //!
-//! Frame 0 is the strip at rest, the clamps a gauge length apart and no force known. Every row taken is one frame
+//! Frame 0 is the strip at rest, the clamps its free length apart and no force known. Every row taken is one frame
 //! more: the moving clamp shifted along the pull, the load cell's reading as the cord on it. No shape was measured.
+//!
+//! ```text
+//! force F = reading − zero       separation = gauge length + displacement − compliance · F
+//! ```
 
-mod branch;
+pub(crate) mod branch;
 mod column;
 mod force_table;
 mod set;
@@ -23,10 +27,12 @@ mod tests;
 pub use column::Column;
 pub use force_table::{ForceTable, Measure, read_force_table};
 pub use set::{Added, Sample, add_to_set};
-pub use settings::{Direction, Extension, StripTest};
+pub use settings::{Direction, Extension, FreeLength, StripTest};
 
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Cord, Frame, Noise, Phase, Sequence};
+use crate::inspection::pull::{self, Reading};
+use crate::inspection::{Notice, Severity};
 use crate::io::shortened;
 use crate::io::table::Table;
 use branch::{numbered, phases};
@@ -42,29 +48,80 @@ const BRANCH: &str = "branch";
 /// The clamps of a tensile test are this many gauge lengths apart; other values are another unit or quantity.
 const SEPARATION: RangeInclusive<f64> = 0.5..=10.0;
 
-/// A row of the table.
-struct Reading {
-    branch: usize,
-    /// Of the clamps, m.
-    separation: f64,
-    /// N.
-    force: f64,
+/// A strip test that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strip {
+    /// The sequence: the rest, then a frame a row.
+    pub sequence: Sequence,
+    /// How far apart the clamps are at rest, m.
+    pub free_length: f64,
+    /// The row that each frame comes from, the first below the header 1; 0 for the rest.
+    rows: Vec<usize>,
+    /// The branch of each frame.
+    branches: Vec<usize>,
+    /// The rows that repeat the one before them.
+    repeats: Vec<usize>,
+    /// Name of the table.
+    table: String,
+}
+
+impl Strip {
+    /// Leaves out what was read after the strip broke, and tells of all that seems wrong with it.
+    ///
+    /// * `areal_density` — of the cloth, kg/m², if it is known: the size of the forces is judged by it
+    pub fn inspect(&mut self, areal_density: Option<f64>) -> Vec<Notice> {
+        let counted = format!("{} row", self.table);
+        let mut notices: Vec<Notice> = self.repeated(&counted).into_iter().collect();
+        notices.extend(pull::inspect(&mut self.sequence, areal_density, &counted, &self.rows));
+        self.rows.truncate(self.sequence.frames.len());
+        self.branches.truncate(self.sequence.frames.len());
+        notices
+    }
+
+    /// The rows that are taken, the first below the header 1.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows[1..]
+    }
+
+    /// The branches of those rows, in their order.
+    pub fn branches(&self) -> Vec<usize> {
+        let mut branches = self.branches.clone();
+        branches.dedup();
+        branches
+    }
+
+    fn repeated(&self, counted: &str) -> Option<Notice> {
+        let first = self.repeats.first()?;
+        let count = self.repeats.len();
+        let (rows, repeat) = if count == 1 { ("row", "repeats") } else { ("rows", "repeat") };
+        Some(Notice {
+            severity: Severity::Remark,
+            sequence: self.sequence.name.clone(),
+            place: format!("{counted} {first}"),
+            found: format!("{count} {rows} that {repeat} the one before"),
+            expected: "each reading once: the others are left out, since they tell nothing new".into(),
+        })
+    }
 }
 
 /// Reads a tensile machine's table. Columns that are not asked for may hold anything.
 ///
-/// The phase of a branch follows from where it begins and ends; its cycle is half its number.
+/// The phase of a branch follows from where it begins and ends; its cycle is half its number. A row that repeats the one
+/// before it is left out.
 ///
 /// # Errors
 /// A setting outside what it may be; not a table; a column that is missing or whose unit is not known; a number that
-/// is not finite; clamps less than half a gauge length apart or more than ten; rows or branches that do not exist.
-pub fn read_strip(path: &Path, test: &StripTest) -> Result<Sequence> {
+/// is not finite; clamps less than half a gauge length apart or more than ten; rows or branches that do not exist; a
+/// preload that no loading reaches.
+pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
     test.validate()?;
-    let (mesh, pull) =
-        test.specimen().map_err(|source| Error::Mechanics { context: test.name.clone(), source })?;
     let table = Table::read_columns(path, &test.columns())?;
     let readings = readings(&table, test)?;
     let phases = phases(readings.iter().map(|reading| (reading.branch, reading.separation)));
+    let (taken, repeats) = without_repeats(taken(&table, test, &readings)?);
+    let length = free_length(&table, test, &readings)?;
+    let (mesh, pull) =
+        test.specimen(length).map_err(|source| Error::Mechanics { context: test.name.clone(), source })?;
     let frame = |branch: usize, phase, shift: f64, cords| Frame {
         time: None,
         cycle: Some(branch / 2),
@@ -73,15 +130,14 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Sequence> {
         cords,
         positions: None,
     };
-    let taken = taken(&table, test, &readings)?;
     let first = taken.first().map_or(0, |reading| reading.branch);
     let mut frames = vec![frame(first, Phase::Hold, 0.0, Vec::new())];
     frames.extend(taken.iter().map(|reading| {
         let cord = Cord { clip: 1, force: pull * reading.force, point: None };
-        frame(reading.branch, phases[&reading.branch], reading.separation - test.gauge, vec![cord])
+        frame(reading.branch, phases[&reading.branch], reading.separation - length, vec![cord])
     }));
     let clip = |name: &str, vertices| Clip { name: name.into(), mass_kg: 0.0, vertices };
-    Ok(Sequence {
+    let sequence = Sequence {
         name: test.name.clone(),
         kind: test.direction.kind(),
         gravity: Vector3::zeros(),
@@ -91,6 +147,14 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Sequence> {
         mesh,
         clips: vec![clip("fixed", vec![0, 1]), clip("moving", vec![2, 3])],
         frames,
+    };
+    Ok(Strip {
+        sequence,
+        free_length: length,
+        rows: std::iter::once(0).chain(taken.iter().map(|reading| reading.number)).collect(),
+        branches: std::iter::once(first).chain(taken.iter().map(|reading| reading.branch)).collect(),
+        repeats,
+        table: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
     })
 }
 
@@ -109,11 +173,13 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
     let mut readings = Vec::new();
     for row in chosen_rows(table, test.rows.as_ref())? {
         let value = extension.value(table, row)?;
-        let separation = match test.extension {
+        let force = force.value(table, row)? - test.zero;
+        let clamps = match test.extension {
             Extension::Separation(_) => value,
             Extension::Displacement(_) => test.gauge + value,
             Extension::Strain(_) => test.gauge * (1.0 + value),
         };
+        let separation = clamps - test.compliance * force;
         if !SEPARATION.contains(&(separation / test.gauge)) {
             let found = format!("clamps {separation} m apart");
             let expected = format!(
@@ -125,7 +191,7 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
             return Err(table.invalid(row, &column.name, found, expected));
         }
         let branch = branch.map_or(Ok(0), |branch| table.index(row, branch))?;
-        readings.push(Reading { branch, separation, force: force.value(table, row)? });
+        readings.push(Reading { number: row + 1, branch, separation, force });
     }
     if branch.is_none() {
         let separations: Vec<_> = readings.iter().map(|reading| reading.separation).collect();
@@ -134,6 +200,35 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
         }
     }
     Ok(readings)
+}
+
+/// How far apart the clamps are where the strip is straight and free, m.
+fn free_length(table: &Table, test: &StripTest, readings: &[Reading]) -> Result<f64> {
+    let force = match test.free_length {
+        FreeLength::Gauge => return Ok(test.gauge),
+        FreeLength::Length(length) => return Ok(length),
+        FreeLength::Preload(force) => force,
+    };
+    let loading = readings.chunk_by(|a, b| a.branch == b.branch).next().unwrap_or_default();
+    let length = pull::free_length(loading, force);
+    length.filter(|length| SEPARATION.contains(&(length / test.gauge))).ok_or_else(|| {
+        let found = format!("a first loading that does not lead from zero through {force} N");
+        table.incomplete(&test.force.name, found, "a preload that it passes, or the free length itself")
+    })
+}
+
+/// Rows that say the same as the one before them are one reading, and their noise is one.
+fn without_repeats(rows: Vec<&Reading>) -> (Vec<&Reading>, Vec<usize>) {
+    let mut repeats = Vec::new();
+    let mut kept: Vec<&Reading> = Vec::with_capacity(rows.len());
+    for row in rows {
+        let same = |last: &&Reading| Reading { number: row.number, ..**last } == *row;
+        match kept.last().is_some_and(same) {
+            true => repeats.push(row.number),
+            false => kept.push(row),
+        }
+    }
+    (kept, repeats)
 }
 
 /// The rows that may be looked at, from 0.

@@ -18,7 +18,8 @@ fuzz_target!(|bytes: &[u8]| {
         (Direction::Bias, Extension::Strain(extension)),
     ] {
         let test = StripTest::new(direction, 0.08, 0.04, extension, force.clone());
-        let Some(sequence) = answer(read_strip(&path, &test), bytes) else { continue };
-        SAMPLE.comes_back(sequence);
+        let Some(mut strip) = answer(read_strip(&path, &test), bytes) else { continue };
+        strip.inspect(Some(0.3));
+        SAMPLE.comes_back(strip.sequence);
     }
 });

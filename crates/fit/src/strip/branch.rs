@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 const HYSTERESIS: f64 = 0.02;
 
 /// The branch of every row, from 0: a turning point is the last row of the branch that led to it.
-pub(super) fn numbered(extension: &[f64]) -> Vec<usize> {
+pub(crate) fn numbered(extension: &[f64]) -> Vec<usize> {
     let threshold = threshold(extension.iter().copied());
     let mut turns = Vec::new();
     // Where the extension was lowest and highest since the last turn, and whether it rises; unknown at first.

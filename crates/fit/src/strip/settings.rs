@@ -45,6 +45,17 @@ pub enum Extension {
     Strain(Column),
 }
 
+/// At which distance of the clamps the strip is straight and free: strains count from there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FreeLength {
+    /// At the gauge length.
+    Gauge,
+    /// At this one, m: the strip was put in slack, or under tension.
+    Length(f64),
+    /// Where the first loading comes to zero, if it is followed down from this force, N, by a parabola.
+    Preload(f64),
+}
+
 /// A strip test: what the table does not say, and what of the table to take.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StripTest {
@@ -52,14 +63,20 @@ pub struct StripTest {
     pub name: String,
     /// Which way the strip was pulled.
     pub direction: Direction,
-    /// Distance of the clamps at which the strip lies free and straight, m.
+    /// Distance of the clamps at displacement zero, m.
     pub gauge: f64,
+    /// The free length. Default: the gauge length.
+    pub free_length: FreeLength,
     /// Width of the strip, across the pull, m.
     pub width: f64,
     /// The clamps' distance.
     pub extension: Extension,
     /// The load cell's reading, positive in tension.
     pub force: Column,
+    /// What the load cell reads with nothing in it, N. Default: 0.
+    pub zero: f64,
+    /// How much machine and clamps lengthen, m/N: it is taken off the extension. Default: 0.
+    pub compliance: f64,
     /// The column that numbers the branches of the test. Default: `branch` if the table has it; else branches are
     /// found where the extension turns back by more than 2 % of its range, and numbered from 0.
     pub branch_column: Option<String>,
@@ -96,9 +113,12 @@ impl StripTest {
             name: direction.kind().to_string(),
             direction,
             gauge,
+            free_length: FreeLength::Gauge,
             width,
             extension,
             force,
+            zero: 0.0,
+            compliance: 0.0,
             branch_column: None,
             branches: None,
             rows: None,
@@ -118,8 +138,23 @@ impl StripTest {
         if self.name.is_empty() {
             return refuse("name", "nothing".into(), "a name for the sequence");
         }
-        for (field, value) in [("gauge", self.gauge), ("width", self.width)] {
+        let free_length = match self.free_length {
+            FreeLength::Length(length) => length,
+            FreeLength::Gauge | FreeLength::Preload(_) => self.gauge,
+        };
+        for (field, value) in [("gauge", self.gauge), ("width", self.width), ("free_length", free_length)] {
             check_length(value, LARGEST).or_else(|expected| refuse(field, value.to_string(), &expected))?;
+        }
+        if let FreeLength::Preload(force) = self.free_length
+            && !(force > 0.0 && force.is_finite())
+        {
+            return refuse("preload", force.to_string(), "a force above 0, in N");
+        }
+        if !self.zero.is_finite() {
+            return refuse("zero", self.zero.to_string(), "a finite force, in N");
+        }
+        if !(self.compliance >= 0.0 && self.compliance.is_finite()) {
+            return refuse("compliance", self.compliance.to_string(), "0 or more, in m/N");
         }
         if self.every == 0 {
             return refuse("every", "0".into(), "1 for every row, 2 for every second, …");
@@ -134,8 +169,10 @@ impl StripTest {
     }
 
     /// Rest mesh and direction of the pull; vertices 0 and 1 are in the fixed clamp, 2 and 3 in the moving one.
-    pub(super) fn specimen(&self) -> cloth_sim::error::Result<(Mesh, Vector3<f64>)> {
-        let (l, w) = (self.gauge, self.width);
+    ///
+    /// * `length` — free length, m
+    pub(super) fn specimen(&self, length: f64) -> cloth_sim::error::Result<(Mesh, Vector3<f64>)> {
+        let (l, w) = (length, self.width);
         let (corners, triangles, pull) = match self.direction {
             Direction::Warp => {
                 ([[0.0, 0.0], [w, 0.0], [0.0, l], [w, l]], [[0, 1, 3], [0, 3, 2]], Vector3::y())

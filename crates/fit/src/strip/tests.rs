@@ -34,7 +34,7 @@ fn read(text: &str, test: &StripTest) -> Result<Sequence> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("t.csv");
     fs::write(&path, text).unwrap();
-    read_strip(&path, test)
+    read_strip(&path, test).map(|strip| strip.sequence)
 }
 
 /// The message, the table's path without its folder.

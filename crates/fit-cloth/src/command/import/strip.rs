@@ -1,13 +1,16 @@
 //! `fit-cloth import strip`: a tensile machine's table into a sequence.
 
-use crate::command::{Outcome, note_lines_above, tell};
+use crate::command::{Outcome, note_lines_above, tell, warn};
 use crate::failure::{Failure, with_option};
 use crate::options::Telling;
 use crate::output::whole;
 use clap::{Args, ValueEnum};
 use cloth_fit::error::Error;
 use cloth_fit::frame::Sequence;
-use cloth_fit::strip::{Added, Column, Direction, Extension, Sample, StripTest, add_to_set, read_strip};
+use cloth_fit::io::read_fabric;
+use cloth_fit::strip::{
+    Added, Column, Direction, Extension, FreeLength, Sample, Strip, StripTest, add_to_set, read_strip,
+};
 use nalgebra::Isometry3;
 use serde_json::json;
 use std::fs;
@@ -20,10 +23,14 @@ A COLUMN is its name in the header, exactly. Its unit is the ending of that name
 Strain [%]) or stands behind a colon (load:N); it is never guessed. Lengths: m, mm, cm, in. \
 Forces: N, kN, cN, mN, gf, kgf, lbf. Strains: 1, %.
 
+A strip is straight and free at the gauge length, and the load cell reads 0 there; where the table tells otherwise a \
+warning says so, and which of --free-length-m, --preload and --zero mends it. A machine that lengthens cannot be told \
+from a softer cloth: --compliance-m-per-n.
+
 Example:
   fit-cloth import strip weft.csv --set cotton-knit --name cotton-knit \\
     --areal-density-kg-m2 0.3 --direction weft --gauge-m 0.08 --width-m 0.04 \\
-    --separation clamp_distance_m --force force_N --branches 0,2";
+    --separation clamp_distance_m --force force_N --branches 0,2 --zero 0.02";
 
 /// `fit-cloth import strip`.
 #[derive(Debug, Clone, Args)]
@@ -52,9 +59,15 @@ pub struct StripOptions {
     /// Which way the strip was pulled
     #[arg(long)]
     pub direction: StripDirection,
-    /// Distance of the clamps at which the strip is straight and free
+    /// Distance of the clamps at displacement 0, and at which the strip is straight and free
     #[arg(long, value_name = "M")]
     pub gauge_m: f64,
+    /// Distance of the clamps at which the strip is straight and free, if it was put in slack or under tension
+    #[arg(long, value_name = "M", conflicts_with = "preload")]
+    pub free_length_m: Option<f64>,
+    /// Find that distance: the first loading, from where it reaches this force, is followed down to zero
+    #[arg(long, value_name = "N")]
+    pub preload: Option<f64>,
     /// Width of the strip
     #[arg(long, value_name = "M")]
     pub width_m: f64,
@@ -64,6 +77,12 @@ pub struct StripOptions {
     /// Column of the load cell's reading, positive in tension
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub force: Column,
+    /// Reading of the load cell with nothing in it; it is taken off every force
+    #[arg(long, value_name = "N", default_value_t = 0.0)]
+    pub zero: f64,
+    /// How much machine and clamps lengthen by a newton; it is taken off the extension
+    #[arg(long, value_name = "M_PER_N", default_value_t = 0.0)]
+    pub compliance_m_per_n: f64,
     /// Column of the branches' numbers [default: branch, if there; else a branch ends where the extension
     /// turns back by more than 2 % of its range]
     #[arg(long, value_name = "COLUMN")]
@@ -126,42 +145,64 @@ pub enum StripDirection {
 /// The table, the set or an option is not what it should be; the operating system refuses.
 pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let test = strip_test(options);
-    let sequence = read_strip(&options.file, &test)?;
+    let mut strip = read_strip(&options.file, &test)?;
     note_lines_above(telling, &options.file, &test.columns())?;
-    let place = options.set.join(&sequence.name);
+    let place = options.set.join(&strip.sequence.name);
     refuse_replacing(&options.file, &place)?;
     let sample = Sample {
         name: options.name.clone(),
         areal_density: options.areal_density_kg_m2,
         thickness: options.thickness_m,
     };
-    let added = whole(|| add_to_set(&options.set, &sample, &sequence, options.replace)).map_err(by_option)?;
-    let rows = sequence.frames.len() - 1;
-    let [strain, force] = ranges(&sequence, test.gauge);
+    let known = || read_fabric(&options.set).ok().map(|fabric| fabric.areal_density_kg_m2);
+    let notices = strip.inspect(sample.areal_density.or_else(known));
+    let added =
+        whole(|| add_to_set(&options.set, &sample, &strip.sequence, options.replace)).map_err(by_option)?;
+    for notice in &notices {
+        warn(telling, &notice.to_string());
+    }
+    let forces = forces(&strip.sequence);
+    let (rows, branches) = (strip.rows(), strip.branches());
+    let [strain, force] = [strains(&strip), forces.clone()].map(range);
+    let first_force = forces.first().copied().unwrap_or_default();
     let done = match added {
         Added::NewSet => "first sequence of a new set",
         Added::NewSequence => "new sequence of the set",
         Added::Replaced => "replaced the sequence of that name",
     };
     let text = format!(
-        "{}: {rows} {}, strain {:.4} to {:.4}, force {:.4} to {:.4} N\n{done}: {}",
-        sequence.kind,
-        if rows == 1 { "row" } else { "rows" },
+        "{}: {} {}, strain {:.4} to {:.4}, force {:.4} to {:.4} N\n\
+         rows {} to {}, {} {}; free length {:.2} mm, first force {:.4} N\n{done}: {}",
+        strip.sequence.kind,
+        rows.len(),
+        if rows.len() == 1 { "row" } else { "rows" },
         strain[0],
         strain[1],
         force[0],
         force[1],
+        rows[0],
+        rows[rows.len() - 1],
+        if branches.len() == 1 { "branch" } else { "branches" },
+        branches.iter().map(usize::to_string).collect::<Vec<_>>().join(", "),
+        1e3 * strip.free_length,
+        first_force,
         place.display()
     );
     let json = json!({
         "set": options.set.display().to_string(),
-        "sequence": sequence.name,
-        "kind": sequence.kind.to_string(),
+        "sequence": strip.sequence.name,
+        "kind": strip.sequence.kind.to_string(),
         "new_set": added == Added::NewSet,
         "replaced": added == Added::Replaced,
-        "rows": rows,
+        "rows": rows.len(),
+        "first_row": rows.first(),
+        "last_row": rows.last(),
+        "branches": branches,
         "strain": strain,
         "force_n": force,
+        "first_force_n": first_force,
+        "free_length_m": strip.free_length,
+        "notices": notices,
     });
     tell(telling, output, &text, &json)?;
     Ok(Outcome::Done)
@@ -173,6 +214,11 @@ fn strip_test(options: &StripOptions) -> StripTest {
         StripDirection::Warp => Direction::Warp,
         StripDirection::Bias => Direction::Bias,
     };
+    let free_length = match (options.free_length_m, options.preload) {
+        (Some(length), _) => FreeLength::Length(length),
+        (None, Some(force)) => FreeLength::Preload(force),
+        (None, None) => FreeLength::Gauge,
+    };
     let extension = options.extension.chosen();
     let defaults =
         StripTest::new(direction, options.gauge_m, options.width_m, extension, options.force.clone());
@@ -183,6 +229,9 @@ fn strip_test(options: &StripOptions) -> StripTest {
         rows: options.rows.clone(),
         every: options.every,
         force_noise: options.force_noise_n,
+        free_length,
+        zero: options.zero,
+        compliance: options.compliance_m_per_n,
         ..defaults
     }
 }
@@ -213,18 +262,22 @@ fn refuse_replacing(file: &Path, place: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Least and greatest strain, and force along the pull in N.
-fn ranges(sequence: &Sequence, gauge: f64) -> [[f64; 2]; 2] {
+/// Strains of the rows.
+fn strains(Strip { sequence, free_length, .. }: &Strip) -> Vec<f64> {
     let pull = sequence.force_direction.unwrap_or_default();
-    let range = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)])
-    };
-    let rows = || sequence.frames.iter().skip(1);
     let shift = |pose: &Isometry3<f64>| pose.translation.vector.dot(&pull);
-    [
-        range(&mut rows().filter_map(|frame| frame.poses.last()).map(|pose| shift(pose) / gauge)),
-        range(&mut rows().flat_map(|frame| &frame.cords).map(|cord| cord.force.dot(&pull))),
-    ]
+    let poses = sequence.frames.iter().skip(1).filter_map(|frame| frame.poses.last());
+    poses.map(|pose| shift(pose) / free_length).collect()
+}
+
+/// Forces of the rows along the pull, N.
+fn forces(sequence: &Sequence) -> Vec<f64> {
+    let pull = sequence.force_direction.unwrap_or_default();
+    sequence.frames.iter().flat_map(|frame| &frame.cords).map(|cord| cord.force.dot(&pull)).collect()
+}
+
+fn range(values: Vec<f64>) -> [f64; 2] {
+    values.into_iter().fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 /// `COLUMN[:UNIT]`

@@ -1,0 +1,264 @@
+//! A pulled strip by itself: what the forces on its clips and the clips' distance say without any simulation.
+//!
+//! ```text
+//! force                    ╱│ spike: one reading off its neighbours
+//!   │                    ╱  │
+//!   │      rest        ╱    ╲ breakage: it falls while the strip gets longer
+//!   │ slack, tension, ╱
+//!   │ zero off   ___╱           magnitude: N/m of a cloth?
+//!   └──────────────────────── separation of the clips
+//! ```
+
+mod breakage;
+mod magnitude;
+mod polynomial;
+mod rest;
+mod spike;
+#[cfg(test)]
+mod tests;
+mod toe;
+
+use super::{Notice, Severity};
+use crate::frame::{Clip, Fabric, Frame, Kind, Sequence};
+use crate::specimen::rest_normal;
+use crate::strip::branch::numbered;
+use nalgebra::{Isometry3, Vector3};
+use std::ops::Range;
+
+/// A measured force and where the clips were.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reading {
+    /// Of the frame, or of the row that it was imported from.
+    pub(crate) number: usize,
+    /// Which loading or unloading it belongs to, from 0.
+    pub(crate) branch: usize,
+    /// Free length between the clips, m.
+    pub(crate) separation: f64,
+    /// Tension of the strip, N.
+    pub(crate) force: f64,
+}
+
+/// All readings of a strip between two clips, in their order.
+pub(crate) struct Pull {
+    /// Name of the sequence.
+    sequence: String,
+    /// What the readings' numbers count, as `forces.csv frame`.
+    counted: String,
+    /// Free length between the clips at rest, m.
+    gauge: f64,
+    /// Width across the pull, m.
+    width: f64,
+    /// Weight of the clips along the pull, N.
+    weight: f64,
+    /// Standard deviation of a force, N: declared, else estimated.
+    noise: f64,
+    /// The load cycle that it starts with.
+    cycle: usize,
+    readings: Vec<Reading>,
+}
+
+/// A reading so many standard deviations off is no noise.
+const NOISE: f64 = 5.0;
+/// Nor is one so large a share of the largest force: a load cell's zero may drift so far (ISO 7500-1, class 1).
+const DRIFT: f64 = 1e-3;
+
+pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let numbers: Vec<usize> = (0..sequence.frames.len()).collect();
+    notices.extend(inspect(sequence, Some(fabric.areal_density_kg_m2), "forces.csv frame", &numbers));
+}
+
+/// Leaves out the frames after a breakage, and tells of all that was noticed.
+///
+/// * `areal_density` — kg/m², if the forces' size is to be judged
+/// * `counted` — what the frames' numbers count
+/// * `numbers` — one a frame
+pub(crate) fn inspect(
+    sequence: &mut Sequence,
+    areal_density: Option<f64>,
+    counted: &str,
+    numbers: &[usize],
+) -> Vec<Notice> {
+    let Some(mut pull) = Pull::of(sequence, counted, numbers) else { return Vec::new() };
+    let mut notices = Vec::new();
+    let spikes = spike::find(&pull);
+    notices.extend(spike::notice(&pull, &spikes));
+    // One bad reading is not to pass for a breakage or a preload.
+    pull.leave_out(&spikes);
+    if let Some(breakage) = breakage::find(&pull) {
+        let last = pull.readings[breakage.last].number;
+        notices.push(breakage.notice(&pull));
+        pull.readings.truncate(breakage.last + 1);
+        sequence.frames.truncate(numbers.iter().take_while(|&&number| number <= last).count());
+    }
+    notices.extend(rest::check(&pull));
+    notices.extend(areal_density.and_then(|density| magnitude::check(&pull, density)));
+    notices
+}
+
+impl Pull {
+    /// The readings of a stretched strip; `None` if it is none, or not between two clips.
+    fn of(sequence: &Sequence, counted: &str, numbers: &[usize]) -> Option<Self> {
+        let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+        let [first, second] = &sequence.clips[..] else { return None };
+        let centre = |clip: &Clip, pose: &Isometry3<f64>| {
+            let middle: Vector3<f64> = clip.vertices.iter().map(|&v| sequence.mesh.positions[v]).sum();
+            pose * nalgebra::Point3::from(middle / clip.vertices.len() as f64)
+        };
+        let between = |poses: [&Isometry3<f64>; 2]| centre(second, poses[1]) - centre(first, poses[0]);
+        let rest = Isometry3::identity();
+        let apart = between([&rest; 2]);
+        let axis = apart.try_normalize(0.0)?;
+        let along = |vertices: &[usize], axis: &Vector3<f64>| {
+            extent(vertices.iter().map(|&v| sequence.mesh.positions[v].dot(axis)))
+        };
+        let gauge = along(&second.vertices, &axis)[0] - along(&first.vertices, &axis)[1];
+        let across = rest_normal(&sequence.mesh).cross(&axis);
+        let sides = along(&(0..sequence.mesh.len()).collect::<Vec<_>>(), &across);
+        let reading = |(frame, &number): (&Frame, &usize)| {
+            let [from, to] = &frame.poses[..] else { return None };
+            let now = between([from, to]);
+            let pull = now.try_normalize(0.0)?;
+            // What one clip is pulled with, the other is held with.
+            let tensions = [(0, -pull), (1, pull)];
+            let known =
+                tensions.into_iter().filter_map(|(clip, pull)| Some(frame.clip_force(clip)?.dot(&pull)));
+            let (count, sum) = known.fold((0, 0.0), |(count, sum), tension| (count + 1, sum + tension));
+            let separation = gauge + now.norm() - apart.norm();
+            (count > 0).then(|| Reading { number, branch: 0, separation, force: sum / f64::from(count) })
+        };
+        let mut readings: Vec<Reading> = sequence.frames.iter().zip(numbers).filter_map(reading).collect();
+        if !stretched || gauge <= 0.0 || readings.is_empty() {
+            return None;
+        }
+        let separations: Vec<f64> = readings.iter().map(|reading| reading.separation).collect();
+        for (reading, branch) in readings.iter_mut().zip(numbered(&separations)) {
+            reading.branch = branch;
+        }
+        let declared = sequence.noise.and_then(|noise| noise.force_n);
+        Some(Self {
+            sequence: sequence.name.clone(),
+            counted: counted.into(),
+            gauge,
+            width: sides[1] - sides[0],
+            weight: (first.mass_kg + second.mass_kg) * sequence.gravity.dot(&axis).abs(),
+            noise: declared.unwrap_or_else(|| noise(&readings)),
+            cycle: sequence.frames.iter().find_map(|frame| frame.cycle).unwrap_or(0),
+            readings,
+        })
+    }
+
+    /// The branches, as ranges of readings.
+    fn branches(&self) -> Vec<Range<usize>> {
+        branches(&self.readings)
+    }
+
+    /// True if the readings are in the order of the test: shuffled ones turn back all the time.
+    fn is_in_order(&self) -> bool {
+        self.readings.len() >= 4 * self.branches().len()
+    }
+
+    /// The first branch as separations and forces, if the strip is loaded in it.
+    fn first_loading(&self) -> Vec<[f64; 2]> {
+        let first = self.branches().first().map_or(&[][..], |branch| &self.readings[branch.clone()]);
+        match first {
+            [from, .., to] if to.separation > from.separation => points(first),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The last branch in which the strip is unloaded, from its end on.
+    fn last_unloading(&self) -> Vec<[f64; 2]> {
+        let unloads = |branch: &Range<usize>| {
+            let [from, to] = [branch.start, branch.end - 1].map(|row| self.readings[row].separation);
+            branch.len() > 1 && to < from
+        };
+        let last = self.branches().into_iter().rev().find(unloads);
+        let mut points = last.map_or(Vec::new(), |branch| points(&self.readings[branch]));
+        points.reverse();
+        points
+    }
+
+    /// A force that neither noise nor drift nor the clips' weight explains, N.
+    fn threshold(&self) -> f64 {
+        (NOISE * self.noise).max(DRIFT * self.largest_force()) + self.weight
+    }
+
+    fn largest_force(&self) -> f64 {
+        self.readings.iter().fold(0.0, |largest, reading| largest.max(reading.force.abs()))
+    }
+
+    /// How far the clips travelled, m.
+    fn travel(&self) -> f64 {
+        let [low, high] = extent(self.readings.iter().map(|reading| reading.separation));
+        high - low
+    }
+
+    /// Sets readings aside.
+    ///
+    /// * `readings` — ascending
+    fn leave_out(&mut self, readings: &[usize]) {
+        for &reading in readings.iter().rev() {
+            self.readings.remove(reading);
+        }
+    }
+
+    fn notice(&self, severity: Severity, reading: &Reading, found: String, expected: String) -> Notice {
+        let place = format!("{} {}", self.counted, reading.number);
+        Notice { severity, sequence: self.sequence.clone(), place, found, expected }
+    }
+}
+
+/// The free length of a strip, m: where a loading comes to zero, if it is followed down from a force; `None` if it does not.
+///
+/// * `force` — N
+pub(crate) fn free_length(loading: &[Reading], force: f64) -> Option<f64> {
+    toe::free_length(&points(loading), force, noise(loading))
+}
+
+fn points(readings: &[Reading]) -> Vec<[f64; 2]> {
+    readings.iter().map(|reading| [reading.separation, reading.force]).collect()
+}
+
+fn branches(readings: &[Reading]) -> Vec<Range<usize>> {
+    let ends = readings.chunk_by(|a, b| a.branch == b.branch).scan(0, |end, branch| {
+        *end += branch.len();
+        Some(*end - branch.len()..*end)
+    });
+    ends.collect()
+}
+
+/// Standard deviation of a force, N: from how four readings in a row miss a parabola, whatever their distances. The median
+/// does not care for a few bad ones.
+fn noise(readings: &[Reading]) -> f64 {
+    let miss = |four: &[Reading]| {
+        // The third divided difference, as a sum of the forces with these weights.
+        let weights: [f64; 4] = std::array::from_fn(|i| {
+            let others = (0..4).filter(|&j| j != i);
+            others.map(|j| four[i].separation - four[j].separation).product::<f64>().recip()
+        });
+        let sum: f64 = weights.iter().zip(four).map(|(weight, reading)| weight * reading.force).sum();
+        (sum / weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()).abs()
+    };
+    let fours = branches(readings).into_iter().flat_map(|branch| readings[branch].windows(4));
+    let misses = fours.map(miss).filter(|miss| miss.is_finite()).collect();
+    // The median of |x| for a normal x of deviation 1.
+    median(misses).unwrap_or(0.0) / 0.6745
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// A number with so many digits that count.
+fn digits(value: f64, count: usize) -> String {
+    let above_one = value.abs().log10().floor();
+    match above_one < -3.0 {
+        true => format!("{value:.*e}", count - 1),
+        false => format!("{value:.*}", (count as f64 - 1.0 - above_one).max(0.0) as usize),
+    }
+}

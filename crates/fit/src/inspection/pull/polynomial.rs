@@ -1,0 +1,79 @@
+//! A polynomial through measured points, by least squares.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Σ cₖ tᵏ with t = (x − origin)/scale.
+pub(super) struct Polynomial {
+    origin: f64,
+    scale: f64,
+    coefficients: DVector<f64>,
+}
+
+impl Polynomial {
+    /// Through points, of a degree or one less than there are points; `None` without two different places.
+    pub(super) fn through(points: &[[f64; 2]], degree: usize) -> Option<Self> {
+        let (origin, last) = (points.first()?[0], points.last()?[0]);
+        let scale = last - origin;
+        let columns = points.len().min(degree + 1);
+        let powers = DMatrix::from_fn(points.len(), columns, |row, power| {
+            ((points[row][0] - origin) / scale).powi(power as i32)
+        });
+        if !powers.iter().all(|power| power.is_finite()) {
+            return None;
+        }
+        let values = DVector::from_iterator(points.len(), points.iter().map(|point| point[1]));
+        let coefficients = powers.svd(true, true).solve(&values, 1e-12).ok()?;
+        Some(Self { origin, scale, coefficients })
+    }
+
+    pub(super) fn at(&self, x: f64) -> f64 {
+        let t = (x - self.origin) / self.scale;
+        self.coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * t + coefficient)
+    }
+
+    pub(super) fn slope(&self, x: f64) -> f64 {
+        let t = (x - self.origin) / self.scale;
+        let terms = self.coefficients.iter().enumerate().skip(1).rev();
+        terms.fold(0.0, |sum, (power, coefficient)| sum * t + power as f64 * coefficient) / self.scale
+    }
+
+    /// Σ (value − polynomial)².
+    pub(super) fn squares(&self, points: &[[f64; 2]]) -> f64 {
+        points.iter().map(|&[x, value]| (value - self.at(x)).powi(2)).sum()
+    }
+
+    /// Where a parabola, or a line, rises through a level; `None` if it does not.
+    pub(super) fn rises_through(&self, level: f64) -> Option<f64> {
+        let [c, b, a] = [0, 1, 2].map(|power| self.coefficients.get(power).copied().unwrap_or(0.0));
+        let c = c - level;
+        let slope = (b * b - 4.0 * a * c).sqrt();
+        // The root at which the slope is positive, without cancellation on either side of the vertex.
+        let t = if b >= 0.0 { -2.0 * c / (b + slope) } else { (slope - b) / (2.0 * a) };
+        (slope > 0.0 && t.is_finite()).then_some(self.origin + self.scale * t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_comes_back_and_so_do_its_roots() {
+        // 3 (x − 2)(x − 5) rises through 0 at 5, through 30 at 7; its mirror image rises at 2.
+        let parabola = |x: f64| 3.0 * (x - 2.0) * (x - 5.0);
+        let points: Vec<[f64; 2]> = (0..9).map(|x| f64::from(x)).map(|x| [x, parabola(x)]).collect();
+        let found = Polynomial::through(&points, 2).unwrap();
+        assert!((found.at(11.0) - parabola(11.0)).abs() < 1e-9 && found.squares(&points) < 1e-18);
+        assert!((found.slope(11.0) - 45.0).abs() < 1e-9);
+        assert!((found.rises_through(0.0).unwrap() - 5.0).abs() < 1e-12);
+        assert!((found.rises_through(30.0).unwrap() - 7.0).abs() < 1e-12);
+        assert!(found.rises_through(-30.0).is_none());
+        let mirrored: Vec<[f64; 2]> = points.iter().map(|[x, value]| [*x, -value]).collect();
+        let found = Polynomial::through(&mirrored, 2).unwrap();
+        assert!((found.rises_through(0.0).unwrap() - 2.0).abs() < 1e-12);
+        let line = Polynomial::through(&[[1.0, 2.0], [3.0, 6.0]], 2).unwrap();
+        assert!((line.rises_through(0.0).unwrap()).abs() < 1e-12);
+        assert!(Polynomial::through(&[[1.0, 2.0], [1.0, 6.0]], 2).is_none());
+        assert!(Polynomial::through(&[], 2).is_none());
+    }
+}
