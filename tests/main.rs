@@ -15,5 +15,6 @@ mod repair;
 mod rig;
 mod shear;
 mod starts;
+mod strip_faults;
 mod trusted;
 mod whole;

@@ -146,6 +146,108 @@ fn branches_rows_and_thinning_choose_rows() {
     chosen(&text, StripTest { rows: Some(2..=9), branches: Some(vec![2]), ..test() }, &[6, 7]);
 }
 
+fn strip(text: &str, test: &StripTest) -> Strip {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.csv");
+    fs::write(&path, text).unwrap();
+    read_strip(&path, test).unwrap()
+}
+
+#[test]
+fn what_the_machine_adds_is_taken_off() {
+    // The load cell is off by 0.3 N, and the machine lengthens by 1 mm for each newton of the true force.
+    let (zero, compliance) = (0.3, 1e-3);
+    use Extension::{Displacement, Separation, Strain};
+    for (header, extension, of) in [
+        ("d_m,f_N", Separation("d_m".into()), (|d| d) as fn(f64) -> f64),
+        ("d_m,f_N", Displacement("d_m".into()), |d| d - 0.08),
+        ("e,f_N", Strain("e:1".into()), |d| d / 0.08 - 1.0),
+    ] {
+        let text = table(header, |_, [separation, force]| {
+            format!("{},{}", of(separation + compliance * force), force + zero)
+        });
+        let test = StripTest { extension, force: "f_N".into(), zero, compliance, ..test() };
+        assert_close(&curve(&read(&text, &test).unwrap()), &expected());
+    }
+}
+
+#[test]
+fn strains_count_from_the_free_length() {
+    let text = table("d_m,f_N", |_, [separation, force]| format!("{},{force}", separation - 0.08));
+    let extension = || Extension::Displacement("d_m".into());
+    for (length, shift) in [(FreeLength::Length(0.075), 0.005), (FreeLength::Gauge, 0.0)] {
+        let test = StripTest { extension: extension(), force: "f_N".into(), free_length: length, ..test() };
+        let strip = strip(&text, &test);
+        assert_eq!(strip.free_length, 0.08 - shift);
+        let longest = strip.sequence.mesh.positions.iter().fold(0.0f64, |longest, p| longest.max(p.x));
+        assert_eq!(longest, strip.free_length);
+        let rows: Vec<_> = expected().iter().map(|[extension, force]| [extension + shift, *force]).collect();
+        assert_close(&curve(&strip.sequence), &rows);
+    }
+}
+
+#[test]
+fn a_preload_is_followed_down_to_the_free_length() {
+    // A parabola from 78 mm on, seen from 70 or from 80 mm on; slack below.
+    let force = |separation: f64| {
+        let taut = (separation - 0.078f64).max(0.0);
+        100.0 * taut + 2e4 * taut * taut
+    };
+    for from in [0.070, 0.080] {
+        let row = |i: i32| from + 2e-4 * f64::from(i);
+        let rows = (0..120).map(|i| format!("{},{}\n", row(i), force(row(i))));
+        let text = format!("d_m,f_N\n{}", rows.collect::<String>());
+        let with = |preload| StripTest {
+            extension: Extension::Separation("d_m".into()),
+            force: "f_N".into(),
+            free_length: FreeLength::Preload(preload),
+            ..test()
+        };
+        for preload in [0.05, 0.28, 1.0] {
+            assert!((strip(&text, &with(preload)).free_length - 0.078).abs() < 1e-9);
+        }
+        let error = read(&text, &with(90.0)).unwrap_err().to_string();
+        assert!(error.contains("does not lead from zero through 90 N"), "{error}");
+    }
+}
+
+#[test]
+fn a_row_that_repeats_the_one_before_is_left_out_and_said() {
+    let text = table("d_m,f_N", |row, [separation, force]| {
+        let line = format!("{separation},{force}");
+        if row == 2 || row == 5 { format!("{line}\n{line}\n{line}") } else { line }
+    });
+    let test = StripTest { extension: Extension::Separation("d_m".into()), force: "f_N".into(), ..test() };
+    let mut found = strip(&text, &test);
+    assert_close(&curve(&found.sequence), &expected());
+    assert_eq!(found.rows(), [1, 2, 3, 6, 7, 8, 11, 12]);
+    let notices = found.inspect(Some(0.3));
+    let [notice] = &notices[..] else { panic!("{notices:?}") };
+    assert_eq!((notice.severity, notice.place.as_str()), (Severity::Remark, "t.csv row 4"));
+    assert!(notice.found.starts_with("4 rows that repeat"), "{notice}");
+    assert!(strip(&plain(), &self::test()).inspect(Some(0.3)).is_empty());
+}
+
+#[test]
+fn rows_after_a_breakage_are_left_out_and_the_last_one_before_is_named() {
+    // Every row twice, the first two not asked for: it breaks after row 60 of the table.
+    let force = |i: i32| if i <= 30 { 0.1 * f64::from(i) } else { 0.5 };
+    let rows = (1..=40).map(|i| format!("{0},{1}\n{0},{1}\n", f64::from(i) * 1e-4, force(i)));
+    let text = format!("d_m,f_N\n{}", rows.collect::<String>());
+    let test = StripTest {
+        extension: Extension::Displacement("d_m".into()),
+        force: "f_N".into(),
+        rows: Some(3..=usize::MAX),
+        ..test()
+    };
+    let mut strip = strip(&text, &test);
+    let notices = strip.inspect(None);
+    let broken = notices.iter().find(|notice| notice.found.contains("it broke, or slipped")).unwrap();
+    assert_eq!((broken.severity, broken.place.as_str()), (Severity::Remark, "t.csv row 59"));
+    assert_eq!((strip.rows().len(), strip.rows().last()), (29, Some(&59)));
+    assert_eq!((strip.sequence.frames.len(), strip.branches()), (30, vec![0]));
+}
+
 #[test]
 fn bad_tables_are_refused() {
     let check = |old: &str, new: &str, expected: &str| {
@@ -249,6 +351,16 @@ fn bad_settings_are_refused() {
     }
     let longer = format!("{length} (millimetres or centimetres?)");
     check(StripTest { width: 40.0, ..test() }, &format!("width: found 40, {longer}"));
+    check(
+        StripTest { free_length: FreeLength::Length(0.0), ..test() },
+        &format!("free_length: found 0, {length}"),
+    );
+    check(
+        StripTest { free_length: FreeLength::Preload(0.0), ..test() },
+        "preload: found 0, expected a force above 0, in N",
+    );
+    check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a finite force, in N");
+    check(StripTest { compliance: -1.0, ..test() }, "compliance: found -1, expected 0 or more, in m/N");
     check(
         StripTest { every: 0, ..test() },
         "every: found 0, expected 1 for every row, 2 for every second, …",

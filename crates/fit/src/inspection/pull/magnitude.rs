@@ -36,14 +36,15 @@ pub(super) fn check(pull: &Pull, areal_density: f64) -> Option<Notice> {
         return None;
     }
     let found = format!(
-        "{} N on {:.1} mm at a strain of {strain:.4}, {stress:.3e} N/m",
+        "{} N on {:.1} mm at a strain of {strain:.4}, a stiffness of {} N/m",
         digits(largest.force, 3),
         1e3 * pull.width,
+        digits(stiffness, 3),
     );
     let off = |(_, unit): &&(&str, f64)| (unit * stiffness / (COMMON * areal_density)).ln().abs();
     let likely = UNITS.iter().min_by(|a, b| off(a).total_cmp(&off(b))).map_or("", |(name, _)| name);
     let expected = format!(
-        "a stiffness of {lowest:.2} to {:.0e} N/m and at most {:.1e} N/m of a cloth of {areal_density} kg/m²: \
+        "{lowest:.1} to {:.0e} N/m, and a stress of at most {:.1e} N/m of a cloth of {areal_density} kg/m²: \
          another unit than N (as {likely} it would do), or another width",
         MEMBRANE_STIFFNESS[1],
         STRONGEST * areal_density,
