@@ -125,13 +125,8 @@ fn areal_density(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     (counts && !AREAL_DENSITY.contains(&density)).then(|| {
         let remedy = if density > 3.0 { " (g/m²? divide by 1000)" } else { "" };
         let [low, high] = [AREAL_DENSITY.start(), AREAL_DENSITY.end()];
-        let found = format!("areal_density_kg_m2 {density} in fabric.toml");
-        (
-            Severity::Doubt,
-            "test.toml gravity_m_s2",
-            found,
-            format!("{low} to {high} kg/m², as cloth has{remedy}"),
-        )
+        let expected = format!("{low} to {high} kg/m², as cloth has{remedy}");
+        (Severity::Doubt, "fabric.toml areal_density_kg_m2", format!("{density} kg/m²"), expected)
     })
 }
 

@@ -235,11 +235,11 @@ fn weight_that_the_cords_do_not_bear_is_told_with_its_figures() {
     // Four bars of 13.3 g and 100 mm square of 460 g/m², as it was made: 57.8 g.
     let borne = 0.0578 * 9.81;
     let wrong = [
-        noticed("shear", |fabric, _| fabric.areal_density_kg_m2 *= 10.0),
+        noticed("shear", |fabric, _| fabric.areal_density_kg_m2 *= 6.5),
         noticed("shear", |_, s| s.clips.iter_mut().for_each(|clip| clip.mass_kg *= 1000.0)),
         noticed("shear", |_, s| s.gravity = -s.gravity),
     ];
-    for (notices, weight) in wrong.iter().zip([0.0992 * 9.81, 53.2046 * 9.81, borne]) {
+    for (notices, weight) in wrong.iter().zip([0.0831 * 9.81, 53.2046 * 9.81, borne]) {
         let [notice] = &notices[..] else { panic!("{notices:?}") };
         assert_eq!(notice.severity, Severity::Doubt);
         let text = notice.to_string();
@@ -258,18 +258,18 @@ fn weight_that_the_cords_do_not_bear_is_told_with_its_figures() {
     // What was not measured contradicts nothing.
     let silent = [
         noticed("shear", |fabric, sequence| {
-            fabric.areal_density_kg_m2 *= 10.0;
+            fabric.areal_density_kg_m2 *= 6.5;
             sequence.frames.iter_mut().flat_map(|f| &mut f.cords).for_each(|cord| cord.force.z = 0.0);
         }),
         noticed("shear", |fabric, sequence| {
-            fabric.areal_density_kg_m2 *= 10.0;
+            fabric.areal_density_kg_m2 *= 6.5;
             sequence.frames.iter_mut().for_each(|frame| frame.cords.retain(|cord| cord.clip > 0));
         }),
         noticed("shear", |fabric, sequence| {
-            fabric.areal_density_kg_m2 *= 10.0;
+            fabric.areal_density_kg_m2 *= 6.5;
             sequence.force_direction = Some(Vector3::x());
         }),
-        noticed("stretch-weft", |fabric, _| fabric.areal_density_kg_m2 *= 10.0),
+        noticed("stretch-weft", |fabric, _| fabric.areal_density_kg_m2 *= 6.5),
     ];
     assert_eq!(silent, [[], [], [], []].map(|none: [Notice; 0]| none.to_vec()));
 }
@@ -281,7 +281,7 @@ fn an_areal_density_that_a_frame_contradicts_is_doubted_where_rigidity_follows_f
         notices.filter(|n| n.severity == Severity::Doubt).map(|n| n.sequence).collect::<Vec<_>>()
     };
     let mut set = fixture("cotton-denim");
-    set.fabric.areal_density_kg_m2 *= 10.0;
+    set.fabric.areal_density_kg_m2 *= 6.5;
     assert_eq!(
         doubted(&set),
         ["complex-shear", "corner-pull", "shear", "bend-bias", "bend-warp", "bend-weft"]

@@ -4,9 +4,6 @@ use super::{Notice, Severity, area, median};
 use crate::frame::{Fabric, MeasurementSet, Sequence};
 use nalgebra::Vector3;
 
-/// On Earth gravity is between 9.76 and 9.84 m/s²; who rounds may write 10.
-const GRAVITY: [f64; 2] = [9.5, 10.1];
-
 /// Of the weight: cords have friction, and clips are weighed with their screws or without.
 const SHARE: f64 = 0.3;
 
@@ -16,19 +13,9 @@ const NOISE: f64 = 0.01;
 /// Of the forces: what cells are sure of, and what a tilt of their axes by a third of a degree makes.
 const FORCE_SHARE: f64 = 5e-3;
 
-/// Refuses a sequence whose gravity is that of no place, and doubts one whose cords bear another weight than cloth and clips
-/// have.
+/// Doubts a sequence whose cords bear another weight than cloth and clips have.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
-    let size = sequence.gravity.norm();
-    if size != 0.0 && !(GRAVITY[0]..=GRAVITY[1]).contains(&size) {
-        notices.push(Notice {
-            severity: Severity::Refusal,
-            sequence: sequence.name.clone(),
-            place: "test.toml gravity_m_s2".into(),
-            found: format!("gravity of {size} m/s²"),
-            expected: "9.81 m/s², or zero to leave weight out".into(),
-        });
-    } else if let Some(weight) = Weight::of(fabric, sequence).filter(Weight::disagrees) {
+    if let Some(weight) = Weight::of(fabric, sequence).filter(Weight::disagrees) {
         notices.push(Notice {
             severity: Severity::Doubt,
             sequence: sequence.name.clone(),
