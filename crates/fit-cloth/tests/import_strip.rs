@@ -136,7 +136,7 @@ fn bad_input_ends_in_3_and_writes_nothing() {
         "force_N",
         "force",
         &[],
-        "weft.csv:1 header: found no column \"force_N\", expected a column's name, exactly as it stands there",
+        "weft.csv:1 header: found no column \"force_N\", expected one of branch, operator, clamp_distance_m, force, exactly as it stands there",
     );
     check(
         "",
@@ -177,7 +177,7 @@ fn lines_above_the_header_are_passed_over_and_said() {
     let output = import(folder.path(), &[]);
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(text(&output.stderr), "weft.csv: 2 lines above the header are passed over\n");
-    assert!(text(&output.stdout).starts_with("stretch-weft: 4 rows, strain 0.0000 to 0.2000"));
+    assert!(text(&output.stdout).starts_with("stretch-weft: 7 rows, "));
     fs::write(&path, b"PK\x03\x04\x14\0\x06\0").unwrap();
     let output = import(folder.path(), &["--replace"]);
     assert_eq!(output.status.code(), Some(3));

@@ -135,7 +135,7 @@ fn curves_have_band_points_and_the_strains_beneath() {
                 false => {
                     let [x, y] = match curve {
                         "shear" => ["shear strain [–]", "shear stress [N/m]"],
-                        _ => ["Green strain [–]", "second Piola–Kirchhoff stress [N/m]"],
+                        _ => ["Green strain [–]", "PK2 stress [N/m]"],
                     };
                     (format!("{curve}-stress"), [x, y, "strains of all frames"])
                 }

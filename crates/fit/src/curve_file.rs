@@ -30,7 +30,7 @@ const ZERO: f64 = 1e-9;
 pub enum Kind {
     /// Stress (N/m) over strain, of stretch or shear, in the strain of the model that will read it.
     Membrane,
-    /// Second Piola–Kirchhoff stress per width (N/m) over Green strain: stretch of `stvk`.
+    /// Second Piola–Kirchhoff (PK2) stress per width (N/m) over Green strain: stretch of `stvk`.
     Green,
     /// Nominal stress per width (N/m) over engineering strain: stretch of the other models.
     Engineering,
@@ -84,7 +84,7 @@ impl Kind {
     pub fn names(self) -> [&'static str; 2] {
         match self {
             Self::Membrane => ["strain", "stress"],
-            Self::Green => ["Green strain", "second Piola–Kirchhoff stress"],
+            Self::Green => ["Green strain", "PK2 stress"],
             Self::Engineering => ["engineering strain", "nominal stress"],
             Self::Shear => ["shear strain", "shear stress"],
             Self::Diagonal => ["diagonal strain", "diagonal stress"],

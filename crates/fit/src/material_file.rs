@@ -204,6 +204,7 @@ impl MaterialFile {
 /// What a component's curve gives over what.
 fn measure(model: Model, component: Component) -> String {
     let [strain, stress] = Kind::of(component, model).names();
+    let stress = stress.replace("PK2", "second Piola–Kirchhoff (PK2)");
     match (component.is_bending(), model) {
         (false, _) => format!("{stress} per width [N/m] over {strain} [1]"),
         (true, Model::Springs) => {
