@@ -81,7 +81,8 @@ fn a_table_becomes_a_sequence_of_a_set() {
     let folder = folder();
     let sum = "stretch-weft: 4 rows, strain 0.0000 to 0.2000, force 0.0000 to 0.8000 N";
     let first = import(folder.path(), &["--branches", "2,1,3"]);
-    assert_eq!(told(&first), format!("{sum}\nfirst sequence of a new set: knit/stretch-weft\n"));
+    let more = "rows 4 to 7, branches 1, 2, 3; free length 80.00 mm, first force 0.0000 N";
+    assert_eq!(told(&first), format!("{sum}\n{more}\nfirst sequence of a new set: knit/stretch-weft\n"));
     let set = read_set(&folder.path().join("knit")).unwrap();
     assert_eq!((set.fabric.name.as_str(), set.fabric.areal_density_kg_m2), ("cotton knit", 0.3));
     assert_eq!((set.sequences.len(), set.sequences[0].frames.len()), (1, 5));
@@ -93,12 +94,61 @@ fn a_table_becomes_a_sequence_of_a_set() {
         (&2.into(), &"second".into(), &false.into())
     );
     assert_eq!(json["force_n"], serde_json::json!([0.4, 0.8]));
+    assert_eq!(
+        (&json["first_row"], &json["last_row"], &json["branches"], &json["notices"]),
+        (&5.into(), &6.into(), &serde_json::json!([2]), &serde_json::json!([]))
+    );
 
     let third = import(folder.path(), &["--sequence", "second", "--replace", "--rows", "2-", "--quiet"]);
     assert_eq!(told(&third), "");
     let set = read_set(&folder.path().join("knit")).unwrap();
     assert_eq!((set.sequences.len(), set.sequences[0].frames.len()), (2, 7));
     assert_eq!(names(folder.path()), ["knit", "weft.csv"]);
+}
+
+/// A strip of 50 N/m that lies free at 78 mm, the load cell's zero off by `zero`.
+fn tight(zero: f64) -> String {
+    let rows = (0..60).map(|row| {
+        let separation = 0.08 + 2e-4 * f64::from(row);
+        format!("{separation},{}\n", 50.0 * (separation - 0.078) + zero)
+    });
+    format!("clamp_distance_m,force_N\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn a_strip_that_is_not_free_is_told_of_and_each_option_mends_it() {
+    let folder = folder();
+    let import_of = |table: &str, more: &[&str]| {
+        fs::write(folder.path().join("weft.csv"), table).unwrap();
+        import(folder.path(), &[&["--replace"], more].concat())
+    };
+    let warned = import_of(&tight(0.0), &[]);
+    assert_eq!(warned.status.code(), Some(0));
+    let words = text(&warned.stderr);
+    let start = "warning: sequence stretch-weft, weft.csv row 1: found 0.100 N at the gauge length, 80.00 mm";
+    assert!(words.starts_with(start) && words.lines().count() == 1, "{words}");
+    for option in ["--free-length-m 0.07800)", "--zero 0.100)"] {
+        assert!(words.contains(option), "{words}");
+    }
+    for option in [["--free-length-m", "0.078"], ["--preload", "0.1"]] {
+        let output = import_of(&tight(0.0), &option);
+        let line = "rows 1 to 60, branch 0; free length 78.00 mm, first force 0.1000 N\n";
+        assert!(told(&output).contains(line), "{}", told(&output));
+    }
+    // A force of 0.1 N at rest less 0.1 N, and a machine that lengthens by 10 mm/N.
+    let output = import_of(&tight(0.0), &["--zero", "0.1", "--compliance-m-per-n", "0.01"]);
+    assert!(
+        told(&output).starts_with("stretch-weft: 60 rows, strain 0.0000 to 0.0737, force 0.0000 to 0.5900 N")
+    );
+    let both = command(
+        folder.path(),
+        &[&["import", "strip", "weft.csv"], &OPTIONS[..], &["--preload", "1", "--free-length-m", "0.1"]]
+            .concat(),
+    );
+    assert_eq!({ both }.output().unwrap().status.code(), Some(2));
+    let quiet = import_of(&tight(0.0), &["--json", "--quiet"]);
+    let json: serde_json::Value = serde_json::from_str(told(&quiet)).unwrap();
+    assert_eq!(json["notices"][0]["severity"], "doubt");
 }
 
 #[test]

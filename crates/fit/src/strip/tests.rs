@@ -362,6 +362,16 @@ fn bad_settings_are_refused() {
     check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a finite force, in N");
     check(StripTest { compliance: -1.0, ..test() }, "compliance: found -1, expected 0 or more, in m/N");
     check(
+        StripTest { free_length: FreeLength::Length(0.0), ..test() },
+        &format!("free_length: found 0, {length}"),
+    );
+    check(
+        StripTest { free_length: FreeLength::Preload(0.0), ..test() },
+        "preload: found 0, expected a force above 0, in N",
+    );
+    check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a finite force, in N");
+    check(StripTest { compliance: -1.0, ..test() }, "compliance: found -1, expected 0 or more, in m/N");
+    check(
         StripTest { every: 0, ..test() },
         "every: found 0, expected 1 for every row, 2 for every second, …",
     );
