@@ -253,7 +253,7 @@ fn what_is_there_is_not_overwritten() {
     };
     refused(
         &with("weft.csv", "knit", &[]),
-        "knit/stretch-weft sequence: found one of that name, expected a new name, or leave to replace it",
+        "knit/stretch-weft sequence: found one of that name, expected a new name, or leave to replace it (--sequence, --replace)",
     );
     refused(
         &with("weft.csv", "weft.csv", &["--replace"]),
@@ -300,7 +300,9 @@ fn every_help_has_an_example_that_runs() {
         let example = example.split("\n\n").next().unwrap().replace("\\\n", " ");
         let words: Vec<_> = example.split_whitespace().collect();
         assert_eq!(words[0], "fit-cloth");
-        assert!(told(&command(folder.path(), &words[1..]).output().unwrap()).contains("new set"));
+        // A zero that this table's machine did not have is told.
+        let output = command(folder.path(), &words[1..]).output().unwrap();
+        assert!(output.status.success() && text(&output.stdout).contains("new set"), "{output:?}");
     }
 }
 
