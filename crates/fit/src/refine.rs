@@ -9,7 +9,7 @@ use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::report::Level;
 use crate::simulation::{Objective, Simulation};
 use crate::stage::{Constraints, Event, Settings, Watch};
-use crate::uncertainty::neighbours_variance;
+use crate::uncertainty::variance_left;
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
@@ -59,6 +59,9 @@ impl GrowthRule {
         after < left * before || self.significance && before - after > SIGNIFICANT * noise
     }
 }
+
+/// Residuals up to this share of what is compared are rounding, and none is better than another.
+const ROUNDING: f64 = 1e-12;
 
 /// Residuals are whitened anew once at the minimum of every level, which is compared with others; of the one that is kept
 /// until that moves by less than this share, or so often.
@@ -110,7 +113,6 @@ pub fn grow(
     let mut levels = Vec::new();
     let mut kept: Option<(StiffnessCurve, Outcome, Domain)> = None;
     let rule = settings.growth;
-    let tracks = simulation.tracks();
     let mut curve = simulation.curve().clone();
     let mut tries = 0;
     loop {
@@ -124,11 +126,11 @@ pub fn grow(
             return Ok(Growth { curve, outcome, domain, levels, stopped });
         }
         let all = points >= most;
-        // What was declared may be too large: neighbours then differ by less.
-        let noise = neighbours_variance(&outcome.residual, &tracks);
-        let noise = if simulation.noise_is_known() { noise.min(1.0) } else { noise };
+        let noise = variance_left(&outcome.residual, points, simulation.noise_is_known());
+        let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
+        let pays = |before: f64, after: f64| rule.pays(before.max(rounding), after.max(rounding), noise);
         let best = match kept {
-            Some(best) if !rule.pays(best.1.sum_of_squares, outcome.sum_of_squares, noise) => {
+            Some(best) if !pays(best.1.sum_of_squares, outcome.sum_of_squares) => {
                 tries += 1;
                 best
             }

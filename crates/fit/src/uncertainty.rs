@@ -99,10 +99,12 @@ impl Scatter {
     }
 }
 
-/// Variance of the noise in residuals from differences of neighbours; their mean square where nothing has a neighbour.
-pub(crate) fn neighbours_variance(residual: &DVector<f64>, tracks: &[Vec<usize>]) -> f64 {
-    let mean_square = residual.norm_squared() / residual.len().max(1) as f64;
-    successive_variance(residual, tracks, &vec![true; residual.len()]).unwrap_or(mean_square)
+/// Variance of a residual after a fit of so many parameters: 1, in units of a noise that is known, unless less is left than
+/// that leaves in one of a hundred fits; else what is left per degree of freedom.
+pub(crate) fn variance_left(residual: &DVector<f64>, parameters: usize, known: bool) -> f64 {
+    let freedom = residual.len().saturating_sub(parameters).max(1) as f64;
+    let sum = residual.norm_squared();
+    if known && sum >= chi_square(freedom, -Z_99) { 1.0 } else { sum / freedom }
 }
 
 /// Variance from differences of neighbours, in which a smooth misfit cancels; `None` where nothing has a neighbour. A

@@ -315,6 +315,8 @@ pub(crate) fn case_44(extent: Extent) -> Vec<Row> {
             for_all(row, extent.runs(40, 1_000), any::<[usize; 2]>(), |row, [at, damage]| {
                 let (token, by) = (pick(&tokens, at), *pick(&NO_NUMBERS, damage));
                 let by = if by.is_empty() && may_miss(reader, token) { "nan" } else { by };
+                // A vertex that was not observed: of all three coordinates, which has no line of its own.
+                let by = if by == "nan" && reader.file.ends_with(".ply") { "inf" } else { by };
                 let wanted = Wanted { line: Some(token.line), field: &token.field, words: "" };
                 refused(row, reader, &place, &token.replaced(reader.text(), by), &wanted)
             })

@@ -43,7 +43,9 @@ impl Uniform<'_> {
             let noisy = forces.into_iter().map(|force| force + Vector3::from_fn(|_, _| noise()));
             let cord = |(clip, force)| Cord { clip, force, point: None };
             let cords = if strain == 0.0 { Vec::new() } else { noisy.enumerate().map(cord).collect() };
-            Frame { poses, cords, ..Frame::default() }
+            // A sheared sheet that nobody saw may have buckled.
+            let positions = (self.kind == Kind::Shear).then(|| self.flat(strain));
+            Frame { poses, cords, positions, ..Frame::default() }
         });
         let clip = |(name, vertices): &(&str, [usize; 2])| Clip {
             name: (*name).into(),
@@ -83,6 +85,13 @@ impl Uniform<'_> {
         let moved = Isometry3::from(Translation3::from(along * ((stretch - 1.0) * self.side)));
         let force = along * ((self.law)(strain) * slope * self.side);
         (vec![Isometry3::identity(), moved], vec![-force, force])
+    }
+
+    /// Where the corners are seen, in their plane.
+    fn flat(&self, strain: f64) -> Vec<Vector3<f64>> {
+        let (side, angle) = (self.side, strain.asin());
+        let [weft, warp] = [Vector3::x() * side, Vector3::new(angle.sin(), angle.cos(), 0.0) * side];
+        vec![Vector3::zeros(), weft, warp, weft + warp]
     }
 
     /// Weft stays, warp leans by γ, sin γ the strain: along each bar pulls σ times its length.

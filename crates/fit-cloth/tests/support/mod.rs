@@ -60,7 +60,7 @@ fn stretch(kind: Kind) -> Sequence {
     sequence(kind, square(2), clips(bars), frames.collect())
 }
 
-/// A picture frame: weft stays, warp leans by γ. Along each bar pulls L k sin γ.
+/// A picture frame, seen flat: weft stays, warp leans by γ. Along each bar pulls L k sin γ.
 fn shear(kind: Kind) -> Sequence {
     let frames = (0..=6).map(|i| {
         let angle = 0.3 * f64::from(i) / 6.0;
@@ -77,6 +77,7 @@ fn shear(kind: Kind) -> Sequence {
         Frame {
             poses,
             cords: cords(&[-pull * weft, pull * weft, -pull * warp, pull * warp]),
+            positions: Some(vec![Vector3::zeros(), SIDE * weft, SIDE * warp, SIDE * (weft + warp)]),
             ..Frame::default()
         }
     });

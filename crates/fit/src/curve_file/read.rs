@@ -25,9 +25,11 @@ impl CurveFile {
         let column = |place: usize| -> Result<Vec<f64>> {
             (0..table.rows()).map(|row| table.number(row, place)).collect()
         };
-        // A row that the data do not see has no band.
+        // A row that the data do not see has no band, on neither side.
+        let sides: Vec<usize> = [a, b].into_iter().flatten().collect();
         let cells = |place: usize| -> Result<Vec<f64>> {
-            let empty = |row: usize| table.text(row, place).is_empty();
+            let empty =
+                |row: usize| sides.len() == 2 && sides.iter().all(|&side| table.text(row, side).is_empty());
             (0..table.rows())
                 .map(|row| if empty(row) { Ok(f64::NAN) } else { table.number(row, place) })
                 .collect()
