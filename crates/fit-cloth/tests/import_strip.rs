@@ -257,7 +257,7 @@ fn what_is_there_is_not_overwritten() {
     );
     refused(
         &with("weft.csv", "weft.csv", &["--replace"]),
-        "weft.csv folder: found something else, expected a set's folder, or nothing",
+        "weft.csv folder: found something else, expected a set's folder, or nothing (--set)",
     );
     refused(
         &with("weft.csv", "knit/stretch-weft", &[]),

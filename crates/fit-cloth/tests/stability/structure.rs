@@ -62,7 +62,8 @@ pub(crate) fn case_45(extent: Extent) -> Vec<Row> {
         rows.push(for_all(row, runs, any::<[usize; 3]>(), |row, [file, line, column]| {
             // What nobody asks for in a laboratory's table may have any name.
             let named = |reader: &&&Reader| !name.starts_with("a column") || reader.file != "strip.csv";
-            let reader = pick(&tables.iter().filter(named).collect::<Vec<_>>(), file);
+            let tables: Vec<&&Reader> = tables.iter().filter(named).collect();
+            let reader = pick(&tables, file);
             let mut cells = cells(reader);
             let (line, column) = (1 + line % (cells.len() - 1), column % cells[0].len());
             let (line, field) = damage(&mut cells, line, column);

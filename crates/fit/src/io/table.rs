@@ -232,15 +232,12 @@ impl Table {
     }
 }
 
-/// True for a row whose commas may be decimal ones: so many fields as are too many are digits alone, behind a whole number.
+/// True for a row whose commas may be decimal ones: what is too many are digits alone, and no number has a point.
 fn has_decimal_commas(record: &StringRecord, expected: usize) -> bool {
-    let is_digits = |field: &str| !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_digit());
-    let is_whole = |field: &str| is_digits(field.trim_start_matches(['-', '+']));
-    let fields: Vec<&str> = record.iter().collect();
-    let numbers = fields
-        .windows(2)
-        .filter(|pair| is_whole(pair[0]) && pair[1].starts_with(|c: char| c.is_ascii_digit()));
-    record.len() > expected && numbers.count() >= record.len() - expected
+    let is_digits = |field: &&str| !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_digit());
+    let has_point = |field: &str| field.contains('.') && field.parse::<f64>().is_ok();
+    let fractions = record.iter().skip(1).filter(is_digits).count();
+    record.len() > expected && fractions >= record.len() - expected && !record.iter().any(has_point)
 }
 
 /// How many lines of a text stand above the header: the first line that names all of the columns, or else the last of

@@ -277,7 +277,10 @@ fn forces(sequence: &Sequence) -> Vec<f64> {
 }
 
 fn range(values: Vec<f64>) -> [f64; 2] {
-    values.into_iter().fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)])
+    let ends =
+        values.into_iter().fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)]);
+    // What rounds to zero has no sign.
+    ends.map(|end| if end.abs() < 5e-5 { 0.0 } else { end })
 }
 
 /// `COLUMN[:UNIT]`

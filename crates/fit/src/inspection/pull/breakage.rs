@@ -52,8 +52,8 @@ fn of_loading(readings: &[Reading], pull: &Pull) -> Option<Breakage> {
         }
         let lost = expected - now.force > LOST * largest || largest - now.force > RELAXED * largest;
         let longer = now.separation - readings[peak].separation > STILL * step;
-        // A force that comes back was a bad reading.
-        let regained = readings[row + 1..].iter().any(|later| later.force >= largest);
+        // A force that is back at once was a bad reading.
+        let regained = readings[row + 1..].iter().take(2).any(|later| later.force >= largest);
         if peak >= FEW && lost && longer && largest - now.force > least && !regained {
             return Some(Breakage { last: peak, fallen: row });
         }
