@@ -137,9 +137,10 @@ fn a_strip_that_is_not_free_is_told_of_and_each_option_mends_it() {
     }
     // A force of 0.1 N at rest less 0.1 N, and a machine that lengthens by 10 mm/N.
     let output = import_of(&tight(0.0), &["--zero", "0.1", "--compliance-m-per-n", "0.01"]);
-    assert!(
-        told(&output).starts_with("stretch-weft: 60 rows, strain 0.0000 to 0.0737, force 0.0000 to 0.5900 N")
-    );
+    // 0.0118 m less 0.0059 m, of 0.08 m: 0.07375.
+    let said = told(&output);
+    assert!(said.starts_with("stretch-weft: 60 rows, strain 0.0000 to 0.073"), "{said}");
+    assert!(said.contains(", force 0.0000 to 0.5900 N\n"), "{said}");
     let both = command(
         folder.path(),
         &[&["import", "strip", "weft.csv"], &OPTIONS[..], &["--preload", "1", "--free-length-m", "0.1"]]
@@ -261,7 +262,7 @@ fn what_is_there_is_not_overwritten() {
     );
     refused(
         &with("weft.csv", "knit/stretch-weft", &[]),
-        "knit/stretch-weft folder: found other files, expected a new folder, an empty one, or one with fabric.toml to replace",
+        "knit/stretch-weft folder: found other files, expected a new folder, an empty one, or one with fabric.toml to replace (--set)",
     );
     // The set's own table of frames, of all tables, lies in the folder to be replaced.
     fs::copy(folder.path().join("weft.csv"), folder.path().join("knit/stretch-weft/frames.csv")).unwrap();
