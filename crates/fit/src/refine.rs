@@ -9,7 +9,7 @@ use crate::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::report::Level;
 use crate::simulation::{Objective, Simulation};
 use crate::stage::{Constraints, Event, Settings, Watch};
-use crate::uncertainty::variance_left;
+use crate::uncertainty::{Covariance, variance_left};
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
@@ -128,9 +128,15 @@ pub fn grow(
         let all = points >= most;
         let noise = variance_left(&outcome.residual, points, simulation.noise_is_known());
         let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
-        let pays = |before: f64, after: f64| rule.pays(before.max(rounding), after.max(rounding), noise);
+        // Points that the data do not tell apart fit noise: they must gain what chance does not give so many.
+        let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
+        let by_chance = |added: usize| 0.5 * added as f64 * SIGNIFICANT * noise;
+        let pays = |before: f64, after: f64, added: usize| {
+            rule.pays(before.max(rounding), after.max(rounding), noise)
+                && (told_apart || before - after > by_chance(added))
+        };
         let best = match kept {
-            Some(best) if !pays(best.1.sum_of_squares, outcome.sum_of_squares) => {
+            Some(best) if !pays(best.1.sum_of_squares, outcome.sum_of_squares, points - best.0.len()) => {
                 tries += 1;
                 best
             }

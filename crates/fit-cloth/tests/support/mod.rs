@@ -77,7 +77,8 @@ fn shear(kind: Kind) -> Sequence {
         Frame {
             poses,
             cords: cords(&[-pull * weft, pull * weft, -pull * warp, pull * warp]),
-            positions: Some(vec![Vector3::zeros(), SIDE * weft, SIDE * warp, SIDE * (weft + warp)]),
+            positions: (kind == Kind::Shear)
+                .then(|| vec![Vector3::zeros(), SIDE * weft, SIDE * warp, SIDE * (weft + warp)]),
             ..Frame::default()
         }
     });

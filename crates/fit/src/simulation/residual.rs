@@ -179,8 +179,9 @@ impl Residuals for Simulation<'_> {
     }
 }
 
-/// Columns up to this share of the longest are rounding.
+/// Columns up to this share of the longest are rounding, and rows up to that.
 const ROUNDING: f64 = 1e-12;
+const UNMOVED: f64 = 1e-9;
 
 /// A Jacobian by control values in which those that no frame sees have columns of zeros. What is left of such a column by
 /// rounding would count as seen, since what is solved scales columns to one length; but control values have one unit, and
@@ -189,6 +190,10 @@ pub(crate) fn without_rounding(mut jacobian: DMatrix<f64>) -> DMatrix<f64> {
     let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
     let rounding = jacobian.column_iter_mut().filter(|column| column.norm() <= ROUNDING * longest);
     rounding.for_each(|mut column| column.fill(0.0));
+    // So are rows: a coordinate along a table's edge, which no bending moves, says nothing of any curve.
+    let longest = jacobian.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
+    let rounding = jacobian.row_iter_mut().filter(|row| row.norm() <= UNMOVED * longest);
+    rounding.for_each(|mut row| row.fill(0.0));
     jacobian
 }
 
