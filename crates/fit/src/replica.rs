@@ -272,7 +272,7 @@ impl Replica {
         // A sheared sheet that nobody saw may have buckled.
         let leaves_plane = |shape: &Option<Vec<f64>>| match shape {
             Some(x) => !seen_flat(x, self.position_noise),
-            None => matches!(sequence.kind, Kind::Shear | Kind::ComplexShear),
+            None => sequence.kind == Kind::Shear,
         };
         self.planar = parts.flat
             || gravity.z.abs() <= FLAT_SLOPE * gravity.norm()
