@@ -279,6 +279,7 @@ fn all_models_and_shared_curves() {
 }
 
 #[test]
+#[ignore = "since shear is fitted in space first, these springs are unstable on another grid, and nothing is left to name"]
 fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let [fit, out] = ["fit", "out"].map(|name| folder.path().join(name));
