@@ -61,7 +61,7 @@ mod tests {
     fn a_parabola_comes_back_and_so_do_its_roots() {
         // 3 (x − 2)(x − 5) rises through 0 at 5, through 30 at 7; its mirror image rises at 2.
         let parabola = |x: f64| 3.0 * (x - 2.0) * (x - 5.0);
-        let points: Vec<[f64; 2]> = (0..9).map(|x| f64::from(x)).map(|x| [x, parabola(x)]).collect();
+        let points: Vec<[f64; 2]> = (0..9).map(f64::from).map(|x| [x, parabola(x)]).collect();
         let found = Polynomial::through(&points, 2).unwrap();
         assert!((found.at(11.0) - parabola(11.0)).abs() < 1e-9 && found.squares(&points) < 1e-18);
         assert!((found.slope(11.0) - 45.0).abs() < 1e-9);
