@@ -75,7 +75,8 @@ fn what_a_notice_offers_mends_the_curve() {
     // 2 N at the gauge length.
     let tight = GAUGE / 1.0170820;
     type Remedy = fn(StripTest) -> StripTest;
-    let faults: [(&str, Vec<[f64; 2]>, Vec<Remedy>); 3] = [
+    type Fault<'a> = (&'a str, Vec<[f64; 2]>, Vec<Remedy>);
+    let faults: [Fault<'_>; 3] = [
         (
             "--free-length-m 0.1966",
             pulled(|s| [s, force(s, tight)]),
