@@ -263,7 +263,7 @@ fn glass_shears_as_its_yarns_let_it_and_predicts_another_strip() {
     }
     let BiasStrip { length, width } = LARGE;
     let (mut centre, mut zone) = (0.0f64, 0.0f64);
-    equilibria(&set, &set.sequences[0], report.curves(), &report.assumed(), &settings, |settled, _| {
+    equilibria(&set, &set.sequences[0], report.curves(), &settings, |settled, _| {
         let displacement = set.sequences[0].frames[settled.frame.index].poses[1].translation.vector.x;
         let expected = LARGE.angle(displacement).to_degrees();
         let [middle, axis] = [[0.03, 0.03], [(length - width) / 2.0, 0.02]]
