@@ -279,12 +279,12 @@ fn all_models_and_shared_curves() {
 }
 
 #[test]
-#[ignore = "since shear is fitted in space first, these springs are unstable on another grid, and nothing is left to name"]
 fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let [fit, out] = ["fit", "out"].map(|name| folder.path().join(name));
     let denim = fixture("cotton-denim");
-    let output = run(&[&["bend", &denim, "--model", "springs", "--out", text(&fit)], &COARSE[..]].concat());
+    let coarse = ["--nodes", "13x13", "--points", "2"];
+    let output = run(&[&["bend", &denim, "--model", "springs", "--out", text(&fit)], &coarse[..]].concat());
     assert!(output.status.success(), "{}", said(&output)[1]);
     let material = fit.join("material.json");
     let validate = |more: &[&str]| {
@@ -298,5 +298,10 @@ fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
     };
     let warning =
         "warning: bending of springs belongs to the grid of its fit, 13x13; --nodes tries bend-warp on it\n";
-    assert_eq!([validate(&[]), validate(&COARSE[..2])], [warning, ""]);
+    // What `check` finds in so short a curve is warned of beside it.
+    let [own_grid, grid_of_fit] = [validate(&[]), validate(&coarse[..2])];
+    assert!(
+        own_grid.contains(warning) && !grid_of_fit.contains("the grid of its fit"),
+        "{own_grid}{grid_of_fit}"
+    );
 }
