@@ -10,6 +10,7 @@
 
 mod edge;
 mod failed_points;
+mod noise;
 mod poses;
 mod profile;
 pub(crate) mod pull;
@@ -88,8 +89,16 @@ impl Inspection {
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 7] =
-    [size::check, failed_points::check, poses::check, weight::check, sag::check, edge::check, pull::check];
+const CHECKS: [Check; 8] = [
+    noise::check,
+    size::check,
+    failed_points::check,
+    poses::check,
+    weight::check,
+    sag::check,
+    edge::check,
+    pull::check,
+];
 
 /// Runs all checks on all sequences of a set.
 pub fn inspect(set: &MeasurementSet) -> Inspection {

@@ -26,6 +26,10 @@ pub use table::TableHold;
 /// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
 const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
 
+/// Noise of a vertex where none is told, m. Waves that this hides change shear by little; those of a millimetre make a sheet
+/// of 0.1 m a fifth softer.
+const CLEAR: f64 = 1e-4;
+
 /// Bending strains of rounding, 1/m: those of springs, which have no unit, are as small.
 const FLAT: f64 = 1e-9;
 
@@ -241,15 +245,16 @@ impl Replica {
         self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
     }
 
-    /// True if a sheet between clips moves in space, and was seen to leave its plane or not seen at all.
+    /// True if a sheet between clips moves in space, and was not seen to stay flat.
     pub fn may_buckle(&self) -> bool {
-        let unseen = |frame: &ReplicaFrame| frame.observed.is_none() || self.is_buckled(frame);
-        !self.planar && self.lines.is_none() && self.frames.iter().any(unseen)
+        let unsure =
+            |frame: &ReplicaFrame| flatness(frame.observed.as_ref(), self.position_noise) != Some(true);
+        !self.planar && self.lines.is_none() && self.frames.iter().any(unsure)
     }
 
     /// True if a sheet between clips was seen to leave its plane, and may do so.
     pub fn is_buckled(&self, frame: &ReplicaFrame) -> bool {
-        let seen = frame.observed.as_ref().is_some_and(|x| !seen_flat(x, self.position_noise));
+        let seen = flatness(frame.observed.as_ref(), self.position_noise) == Some(false);
         seen && !self.planar && self.lines.is_none()
     }
 
@@ -270,8 +275,8 @@ impl Replica {
             .collect();
         let bends = parts.components.iter().any(|component| component.is_bending());
         // A sheared sheet that nobody saw may have buckled.
-        let leaves_plane = |shape: &Option<Vec<f64>>| match shape {
-            Some(x) => !seen_flat(x, self.position_noise),
+        let leaves_plane = |shape: &Option<Vec<f64>>| match flatness(shape.as_ref(), self.position_noise) {
+            Some(flat) => !flat,
             None => sequence.kind == Kind::Shear,
         };
         self.planar = parts.flat
@@ -427,13 +432,21 @@ fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool
     high - low <= FLAT_SLOPE * side
 }
 
-/// True if an observed shape does not leave its plane by more than its noise makes it.
-fn seen_flat(x: &[f64], noise: Option<f64>) -> bool {
-    let heights = || x.iter().skip(2).step_by(3).filter(|z| z.is_finite());
-    let count = heights().count().max(1) as f64;
-    let mean = heights().sum::<f64>() / count;
-    let square = heights().map(|z| (z - mean) * (z - mean)).sum::<f64>() / count;
-    square.sqrt() <= 3.0 * noise.unwrap_or(1e-4)
+/// Whether an observed shape stays in its plane, but for what noise makes of it; `None` where less than half of it was
+/// seen, or where noise could hide a buckle.
+fn flatness(shape: Option<&Vec<f64>>, noise: Option<f64>) -> Option<bool> {
+    let shape = shape?;
+    let heights: Vec<f64> = shape.iter().skip(2).step_by(3).copied().filter(|z| z.is_finite()).collect();
+    if 6 * heights.len() < shape.len() {
+        return None;
+    }
+    let count = heights.len() as f64;
+    let mean = heights.iter().sum::<f64>() / count;
+    let deviation = (heights.iter().map(|z| (z - mean) * (z - mean)).sum::<f64>() / count).sqrt();
+    if deviation > 3.0 * noise.unwrap_or(CLEAR) {
+        return Some(false);
+    }
+    (deviation <= 3.0 * CLEAR).then_some(true)
 }
 
 /// Loading while the extension grows.
@@ -451,6 +464,22 @@ fn phase_of(extensions: &[f64], index: usize) -> Phase {
 mod tests {
     use super::*;
     use cloth_sim::mesh::Grid;
+
+    #[test]
+    fn a_sheet_is_flat_only_where_it_was_seen_to_be() {
+        let waves = |height: f64, seen: usize| -> Vec<f64> {
+            let z = |node: usize| if node >= seen { f64::NAN } else { height * f64::from(node as u8 % 2) };
+            (0..100).flat_map(|node| [0.0, 0.0, z(node)]).collect()
+        };
+        // Waves deviate by half their height.
+        assert_eq!(flatness(Some(&waves(1e-4, 100)), Some(7.5e-5)), Some(true));
+        assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-5)), Some(false));
+        assert_eq!(flatness(Some(&waves(1e-3, 100)), None), Some(false));
+        assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-4)), None);
+        assert_eq!(flatness(Some(&waves(0.0, 100)), Some(7.5e-4)), Some(true));
+        assert_eq!(flatness(Some(&waves(1e-4, 49)), Some(7.5e-5)), None);
+        assert_eq!(flatness(None, None), None);
+    }
 
     #[test]
     fn springs_in_long_cells_are_refused() {

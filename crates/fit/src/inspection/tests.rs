@@ -291,3 +291,14 @@ fn an_areal_density_that_a_frame_contradicts_is_doubted_where_rigidity_follows_f
     set.sequences.iter_mut().flat_map(|s| &mut s.clips).for_each(|clip| clip.mass_kg *= 1000.0);
     assert_eq!(doubted(&set), ["complex-shear", "corner-pull", "shear"]);
 }
+
+#[test]
+fn noise_by_which_nothing_can_be_weighed_is_refused() {
+    for deviation in [0.0, -1e-4, f64::NAN] {
+        let notices = noticed("bend-weft", |_, sequence| {
+            sequence.noise.as_mut().unwrap().position_m = Some(deviation);
+        });
+        refused(&notices, &["noise.position_m", "above 0"]);
+    }
+    assert_eq!(noticed("bend-weft", |_, sequence| sequence.noise = None), []);
+}
