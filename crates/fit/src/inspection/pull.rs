@@ -127,7 +127,7 @@ impl Pull {
             (count > 0).then(|| Reading { number, branch: 0, separation, force: sum / f64::from(count) })
         };
         let mut readings: Vec<Reading> = sequence.frames.iter().zip(numbers).filter_map(reading).collect();
-        if !stretched || gauge <= 0.0 || readings.is_empty() {
+        if !stretched || !gauge.is_finite() || gauge <= 0.0 || readings.is_empty() {
             return None;
         }
         let separations: Vec<f64> = readings.iter().map(|reading| reading.separation).collect();
@@ -197,9 +197,8 @@ impl Pull {
     ///
     /// * `readings` — ascending
     fn leave_out(&mut self, readings: &[usize]) {
-        for &reading in readings.iter().rev() {
-            self.readings.remove(reading);
-        }
+        let mut row = 0..;
+        self.readings.retain(|_| row.next().is_some_and(|row| readings.binary_search(&row).is_err()));
     }
 
     fn notice(&self, severity: Severity, reading: &Reading, found: String, expected: String) -> Notice {
@@ -256,9 +255,9 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
 
 /// A number with so many digits that count.
 fn digits(value: f64, count: usize) -> String {
-    let above_one = value.abs().log10().floor();
-    match above_one < -3.0 {
-        true => format!("{value:.*e}", count - 1),
-        false => format!("{value:.*}", (count as f64 - 1.0 - above_one).max(0.0) as usize),
+    let above_one = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    match (-3.0..6.0).contains(&above_one) {
+        true => format!("{value:.*}", (count as f64 - 1.0 - above_one).max(0.0) as usize),
+        false => format!("{value:.*e}", count - 1),
     }
 }

@@ -30,7 +30,8 @@ from a softer cloth: --compliance-m-per-n.
 Example:
   fit-cloth import strip weft.csv --set cotton-knit --name cotton-knit \\
     --areal-density-kg-m2 0.3 --direction weft --gauge-m 0.08 --width-m 0.04 \\
-    --separation clamp_distance_m --force force_N --branches 0,2 --zero 0.02";
+    --separation clamp_distance_m --force force_N --branches 0,2 \\
+    --compliance-m-per-n 2e-5";
 
 /// `fit-cloth import strip`.
 #[derive(Debug, Clone, Args)]

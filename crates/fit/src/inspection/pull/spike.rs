@@ -1,4 +1,4 @@
-//! A reading far off its neighbours, which as many steps would not lead to.
+//! A reading far off those before and after it.
 
 use super::{NOISE, Notice, Pull, Severity, digits, median};
 use std::ops::Range;

@@ -279,6 +279,21 @@ fn a_spike_is_named_and_nothing_else_is_blamed() {
 }
 
 #[test]
+fn numbers_have_the_digits_that_count() {
+    let shown = [
+        (0.0, "0.00"),
+        (2.0, "2.00"),
+        (-0.0599, "-0.0599"),
+        (999.9, "1000"),
+        (2e-5, "2.00e-5"),
+        (4e7, "4.00e7"),
+    ];
+    for (value, expected) in shown {
+        assert_eq!(digits(value, 3), expected);
+    }
+}
+
+#[test]
 fn forces_of_another_unit_are_noticed() {
     for (factor, unit) in [(1e-6, "MN"), (1e-3, "kN"), (1e3, "mN"), (1e6, "µN")] {
         let (frame, words) = doubt(&loading(|s| factor * law(s, GAUGE)));
