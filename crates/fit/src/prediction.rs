@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::{Kind, MeasurementSet, Sequence};
+use crate::inspection::{Notice, inspect};
 use crate::interventions::Interventions;
 use crate::replica::{Parts, Replica};
 use crate::report::SequenceReport;
@@ -23,6 +24,8 @@ pub struct Prediction {
     pub assumed: Vec<Component>,
     /// Frames without an equilibrium, which take no part.
     pub dropped: Vec<DroppedFrame>,
+    /// Contradictions within the measurements; a sequence that was refused takes no part.
+    pub notices: Vec<Notice>,
     /// What the solves have cost.
     pub counters: Counters,
     /// What helped them along.
@@ -36,7 +39,7 @@ pub struct Prediction {
 /// Sheets between clips that leave their plane are followed from rest through all frames, as a simulator would meet them.
 ///
 /// # Errors
-/// Bad settings; sequences that no replica can be made of.
+/// Bad settings; sequences that no replica can be made of; none that was not refused.
 pub fn predict(
     set: &MeasurementSet,
     kinds: &[Kind],
@@ -47,9 +50,15 @@ pub fn predict(
 ) -> Result<Prediction> {
     settings.validate()?;
     let spent_before = watch.meter.read();
-    let sequences = set.sequences.iter().filter(|sequence| kinds.contains(&sequence.kind));
+    let wanted = |sequence: &&Sequence| kinds.contains(&sequence.kind);
+    let alone = set.sequences.iter().filter(wanted).cloned().collect();
+    let inspection = inspect(&MeasurementSet { fabric: set.fabric.clone(), sequences: alone });
+    let sequences = inspection.set.sequences.iter();
     let sequences: Vec<(&Sequence, Parts)> =
         sequences.map(|sequence| (sequence, parts(sequence.kind, set, curves, settings))).collect();
+    if sequences.is_empty() {
+        inspection.check_refusals(kinds)?;
+    }
     let replicas: Vec<Replica> =
         sequences.iter().map(|(sequence, parts)| Replica::new(sequence, parts)).collect::<Result<_>>()?;
     let takes_part =
@@ -74,6 +83,7 @@ pub fn predict(
         sequences: sequence_reports(&simulation, &forces),
         assumed: unknown,
         dropped: simulation.dropped().to_vec(),
+        notices: inspection.notices.clone(),
         counters,
     })
 }

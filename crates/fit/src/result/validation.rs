@@ -3,6 +3,7 @@
 use super::tables::{cell, force_table};
 use crate::error::Result;
 use crate::frame::MeasurementSet;
+use crate::inspection::Notice;
 use crate::interventions::Interventions;
 use crate::material_file::{MaterialFile, ResidualEntry};
 use crate::stage::Variant;
@@ -30,6 +31,8 @@ struct File<'a> {
     assumed: &'a [Component],
     sequences: Vec<Entry<'a>>,
     without_equilibrium: Vec<Dropped<'a>>,
+    #[serde(skip_serializing_if = "<[Notice]>::is_empty")]
+    notices: &'a [Notice],
     equilibria: usize,
     factorisations: usize,
     #[serde(skip_serializing_if = "Interventions::none")]
@@ -96,6 +99,7 @@ fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) 
         without_equilibrium: dropped
             .map(|d| Dropped { sequence: &d.sequence, frame: d.frame, why: d.status.to_string() })
             .collect(),
+        notices: &prediction.notices,
         equilibria: prediction.counters.equilibria,
         factorisations: prediction.counters.factorisations,
         interventions: &prediction.interventions,
