@@ -79,6 +79,11 @@ fn percent(share: Option<f64>) -> String {
     share.map_or("-".into(), |share| format!("{:.2} %", 100.0 * share))
 }
 
+/// Half a band as a share, in per cent; what rounds to nothing is not said to be nothing.
+fn sure(share: f64) -> String {
+    if share < 5e-4 { "0.1 % or better".into() } else { format!("{:.1} %", 100.0 * share) }
+}
+
 /// The strains or curvatures between which a stage's curve was seen.
 fn seen(stage: &StageReport) -> String {
     let digits = if stage.components[0].is_bending() { 2 } else { 4 };

@@ -31,7 +31,7 @@ pub struct Fit {
     sound: bool,
     /// How far to trust it, and why not farther.
     #[serde(default)]
-    verdict: String,
+    trust: String,
     /// In words: what was fitted to what, how it went, how good, how sure, what to measure next.
     about: String,
     state: String,
@@ -91,7 +91,7 @@ impl Fit {
             model: report.model.to_string(),
             variant: report.variant.to_string(),
             sound: overall.verdict.grade == Grade::Green,
-            verdict: text::verdict_of_fit(report),
+            trust: text::verdict_of_fit(report),
             about: format!(
                 "{} of {} g/m², fitted as {}, {}, to {} frames of {} tests.",
                 set.fabric.name,

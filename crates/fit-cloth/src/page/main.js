@@ -57,8 +57,8 @@ function showFit(chosen) {
   };
   const line = (label) => ({ ...(labelled(label) === fit && { disabled: "" }), style: `--colour: ${colourOf(labelled(label))}; --line: ${LINES[VARIANTS.indexOf(labelled(label).variant) % 4]}` });
   choice("beside", page.fits.map(labelOf), (label) => shown().includes(labelled(label)), toggle, line);
-  byId("verdict").className = fit.sound ? "good" : "bad";
-  for (const words of ["verdict", "state", "good", "sure", "next", "about"]) byId(words).textContent = fit[words];
+  byId("trust").className = fit.sound ? "good" : "bad";
+  for (const words of ["trust", "state", "good", "sure", "next", "about"]) byId(words).textContent = fit[words];
   list("failures", fit.failures);
   list("notices", fit.notices);
   table("summary", ["curve", "points", "at the end of the range", "± 95 %", "range seen", "observed by"], fit.summary, [0, 5]);

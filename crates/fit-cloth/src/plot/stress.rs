@@ -19,6 +19,8 @@ const LEAST: f64 = 5e-3;
 struct Plotted<'r> {
     samples: Vec<Sample>,
     points: Vec<Sample>,
+    /// The strains between which the curve was seen.
+    seen: [f64; 2],
     histogram: &'r Histogram,
     /// Of strain and stress, over all of it.
     extents: [Range<f64>; 2],
@@ -89,22 +91,20 @@ impl<'r> Plotted<'r> {
             if lowest < 0.0 { lowest - space } else { 0.0 }..highest + space,
         ];
         let is_cut = low < lowest || high > highest;
-        Self { samples, points, histogram: &stage.curve.histogram, extents, is_cut }
+        Self { samples, points, seen: stage.curve.seen, histogram: &stage.curve.histogram, extents, is_cut }
     }
 
-    /// Where the range that was seen ends.
-    fn seen(&self) -> f64 {
-        self.samples.iter().map(|sample| sample.strain).fold(f64::MIN, f64::max)
-    }
-
-    /// Marks the range up to the last control point that was not seen.
+    /// Marks the range from rest to the last control point where it was not seen, on either side.
     fn shade(&self, chart: &mut Chart, heights: &Range<f64>, label: &str) {
         let last = self.points.iter().map(|point| point.strain).fold(0.0, f64::max);
-        if last - self.seen() > LEAST * last {
-            let (left, right, low, high) = (self.seen(), last, heights.start, heights.end);
-            let corners = vec![(left, low), (right, low), (right, high), (left, high)];
-            chart.areas([corners], GREY.mix(0.16), label);
-        }
+        let [first_seen, last_seen] = self.seen;
+        let (low, high) = (heights.start, heights.end);
+        let unseen = [[0.0, first_seen], [last_seen, last]].into_iter();
+        let areas: Vec<_> = unseen
+            .filter(|[from, to]| to - from > LEAST * last)
+            .map(|[from, to]| vec![(from, low), (to, low), (to, high), (from, high)])
+            .collect();
+        chart.areas(areas, GREY.mix(0.16), label);
     }
 
     fn curve(&self, chart: &mut Chart) {
@@ -115,12 +115,18 @@ impl<'r> Plotted<'r> {
         let label = if self.is_cut { "95 % band, cut off" } else { "95 % band" };
         chart.areas((!outline.is_empty()).then_some(outline), MODEL.mix(0.22), label);
         let place = |sample: &Sample| (sample.strain, sample.stress);
-        let beyond = self.points.iter().filter(|point| point.strain > self.seen() * (1.0 + LEAST));
+        let slack = LEAST * (self.seen[1] - self.seen[0]);
+        let [first, last] = [self.seen[0] - slack, self.seen[1] + slack];
+        let before = self.samples.iter().filter(|sample| sample.strain < first);
+        let within = || self.samples.iter().filter(|sample| sample.strain >= first);
+        let beyond = self.points.iter().filter(|point| point.strain > last);
+        let before: Vec<_> = before.chain(within().next()).map(place).collect();
         let beyond: Vec<_> = self.samples.last().into_iter().chain(beyond).map(place).collect();
-        if beyond.len() > 1 {
-            chart.dashes(beyond, MODEL.stroke_width(3), "fit, extrapolated");
+        let unseen = [before, beyond].into_iter().filter(|unseen| unseen.len() > 1);
+        for (unseen, label) in unseen.zip(["fit, extrapolated", ""]) {
+            chart.dashes(unseen, MODEL.stroke_width(3), label);
         }
-        chart.paths([self.samples.iter().map(place).collect()], MODEL.stroke_width(4), "fit");
+        chart.paths([within().map(place).collect()], MODEL.stroke_width(4), "fit");
         chart.dots(self.points.iter().map(place), (8, MODEL.filled()), "control points");
     }
 

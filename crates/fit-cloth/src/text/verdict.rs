@@ -1,6 +1,6 @@
 //! A stage in one sentence.
 
-use super::{list, seen, unit};
+use super::{list, seen, sure, unit};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::inspection::Notice;
 use cloth_fit::report::{SequenceReport, StageReport};
@@ -30,7 +30,7 @@ pub fn verdict(stage: &StageReport, notices: &[Notice]) -> String {
 
 /// How sure a curve is that nothing is to be said against.
 fn trusted(stage: &StageReport) -> String {
-    let sure = widest_band(stage).map_or(String::new(), |(_, share)| format!(" to ± {:.1} %", 100.0 * share));
+    let sure = widest_band(stage).map_or(String::new(), |(_, share)| format!(" to ± {}", sure(share)));
     let [stress, unit] = if stage.components[0].is_bending() { ["moment", " 1/m"] } else { ["stress", ""] };
     format!("known{sure} of its largest {stress} from {}{unit}", seen(stage))
 }
@@ -79,8 +79,8 @@ fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
         false => [format!("strain {place:.4}"), "stress".into()],
     };
     let said = format!(
-        "the 95 % band is widest at {at}, ± {:.1} % of the largest {of}: more frames there would narrow it most",
-        100.0 * share
+        "the 95 % band is widest at {at}, ± {} of the largest {of}: more frames there would narrow it most",
+        sure(share)
     );
     reasons.is_empty().then_some(said)
 }
