@@ -226,14 +226,12 @@ pub fn resume(
             report.knowledge = knowledge.clone();
             continue;
         }
-        let fitted = stage::fit(set, &plan, &mut report.knowledge, settings, watch);
-        // What no sequence shows any more was shown by one that was refused.
-        match fitted.and_then(|stage| {
-            stage.map_or_else(
-                || inspection.check_refusals(&plan.kinds).map(|()| None),
-                |stage| Ok(Some(stage)),
-            )
-        }) {
+        let fitted = match stage::fit(set, &plan, &mut report.knowledge, settings, watch) {
+            // The sequence that shows it may have been refused.
+            Ok(None) if plan.pass == 1 => inspection.check_refusals(&plan.kinds).map(|()| None),
+            fitted => fitted,
+        };
+        match fitted {
             Ok(None) => {}
             Ok(Some(stage)) => {
                 let finished = Finished { stage, knowledge: report.knowledge.clone() };

@@ -307,6 +307,33 @@ mod tests {
         }
     }
 
+    /// As in the tails of NIST's Eckerle4: standard deviations are √(‖r‖²/(n − p) (JᵀJ)⁻¹) over all n.
+    #[test]
+    fn a_measurement_that_a_parameter_hardly_moves_counts() {
+        let jacobian = DMatrix::from_column_slice(4, 1, &[2.0, 1.0, 1e-20, 1e-35]);
+        let residual = DVector::from_vec(vec![0.3, -0.6, 0.1, -0.2]);
+        let scatter = Scatter::new(&residual, &jacobian, 1, &[], None);
+        assert_eq!((scatter.measurements, scatter.freedom), (4, 3));
+        let deviation = Covariance::new(&jacobian, &scatter).standard_deviations()[0].unwrap();
+        assert!((deviation - (0.5 / 3.0 / 5.0f64).sqrt()).abs() < 1e-12, "{deviation}");
+        let none = DMatrix::from_column_slice(4, 1, &[2.0, 1.0, 0.0, 0.0]);
+        assert_eq!(Scatter::new(&residual, &none, 1, &[], None).measurements, 2);
+    }
+
+    #[test]
+    fn a_noise_that_is_declared_too_large_is_noticed_and_no_measure() {
+        let mut rng = StdRng::seed_from_u64(6);
+        let (jacobian, tracks) = line(60);
+        let residual = white(&mut rng, 60, 0.2);
+        for (declared, overstated) in [(0.6, true), (0.2, false)] {
+            let scatter = Scatter::new(&residual, &jacobian, 2, &tracks, Some(declared));
+            assert_eq!(scatter.noise_is_overstated(), overstated, "{scatter:?}");
+            let variance = variance_left(&(&residual / declared), 2, true);
+            let expected = if overstated { scatter.residual.powi(2) / declared.powi(2) } else { 1.0 };
+            assert!((variance / expected - 1.0).abs() < 1e-9, "{variance} {expected}");
+        }
+    }
+
     #[test]
     fn what_no_measurement_sees_has_no_band() {
         let jacobian = DMatrix::from_row_slice(3, 3, &[1.0, 2.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 3.0]);

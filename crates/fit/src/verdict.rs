@@ -78,16 +78,17 @@ fn grade(share: f64, [green, amber]: [f64; 2]) -> Grade {
 ///
 /// * `notices` — what was noticed of the measurements
 pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
-    if !stage.curve.observed {
-        return Verdict::of(vec![(Grade::Red, "the measurements do not tell it".into())]);
-    }
-    let mut reasons = Vec::new();
-    reasons.extend(unsure(stage));
-    reasons.extend(stage.sequences.iter().filter_map(far_off));
     let doubted = |notice: &&Notice| {
         notice.severity == Severity::Doubt && stage.sequences.iter().any(|s| s.name == notice.sequence)
     };
-    reasons.extend(notices.iter().filter(doubted).map(|notice| (Grade::Amber, notice.to_string())));
+    let mut reasons: Vec<(Grade, String)> =
+        notices.iter().filter(doubted).map(|notice| (Grade::Amber, notice.to_string())).collect();
+    if !stage.curve.observed {
+        reasons.push((Grade::Red, "the measurements do not tell it".into()));
+        return Verdict::of(reasons);
+    }
+    reasons.extend(unsure(stage));
+    reasons.extend(stage.sequences.iter().filter_map(far_off));
     reasons.extend(assumed(stage));
     let used: usize = stage.sequences.iter().map(|sequence| sequence.frames).sum();
     let dropped = stage.dropped.len() as f64 / (stage.dropped.len() + used).max(1) as f64;
@@ -115,6 +116,11 @@ pub fn of_fit(report: &FitReport) -> Verdict {
         }
     }
     reasons.extend(report.failures.iter().map(|failure| (Grade::Red, failure.in_words())));
+    // Of those that made a stage fail nothing more is to be said.
+    let refused = report.notices.iter().filter(|notice| notice.severity == Severity::Refusal);
+    let told = |said: &String| report.failures.iter().any(|failure| failure.reason == *said);
+    let left_out = refused.map(Notice::to_string).filter(|said| !told(said));
+    reasons.extend(left_out.map(|said| (Grade::Amber, said)));
     if reasons.is_empty() && report.stages.is_empty() {
         reasons.push((Grade::Red, "nothing was fitted".into()));
     }

@@ -156,9 +156,9 @@ fn gains_from_bending(plan: &Plan, replicas: &[Replica]) -> bool {
     plan.fitted[0] != Component::Shear || replicas.iter().any(Replica::may_buckle)
 }
 
-/// What a curve may be off by since bending was assumed: as much as from the first pass, in which the sheet does not bend
-/// at all. No fabric is stiffer than that, and few are much softer than what is assumed. A quarter more, since a sheet that
-/// stayed flat is the end of that range, and must be well inside it.
+/// The error that assumed bending may make, N/m at each control point: the difference to the first pass, in which the sheet
+/// does not bend at all. No fabric is stiffer than that, and few are much softer than the assumption. A quarter is added,
+/// since the truth of a sheet that stayed flat is the end of that range and must be well inside the band.
 fn ignorance(
     plan: &Plan,
     assumed: &BTreeMap<Component, f64>,
