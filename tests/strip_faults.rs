@@ -135,6 +135,30 @@ fn one_bad_reading_is_named_and_a_robust_fit_gives_the_truth() {
     assert!(is_right(&report));
 }
 
+/// The law above, and one that no line of stiffness meets: from 6 % on the data see no rest.
+#[test]
+fn a_range_that_starts_under_load_is_seen_from_there_and_has_as_many_points_as_it_needs() {
+    let loaded = |start: f64, law: fn(f64) -> f64| -> Vec<[f64; 2]> {
+        let strain = |row: usize| start + (0.1 - start) * row as f64 / 80.0;
+        noisy((0..=80).map(|row| [GAUGE * (1.0 + strain(row)), law(strain(row))]).collect())
+    };
+    let half = fitted(&import(&loaded(0.05, |e| 0.05 * stress(e)), |test| test), None);
+    let curve = &half.stages[0].curve;
+    assert!(
+        (curve.seen[0] - 0.05).abs() < 1e-3 && (curve.share_visited - 0.5).abs() < 0.02,
+        "{:?}",
+        curve.seen
+    );
+    assert!(curve.samples.iter().all(|sample| sample.band.is_none() == (sample.strain < curve.seen[0])));
+    // Its stiffness bends between 6 and 10 %.
+    let bent =
+        fitted(&import(&loaded(0.06, |e| 40.0 * e + 6e4 * (e - 0.07).max(0.0).powi(2)), |test| test), None);
+    let stage = &bent.stages[0];
+    let least = stage.levels.iter().map(|level| level.rms).fold(f64::MAX, f64::min);
+    let kept = stage.levels.iter().find(|level| level.points == stage.curve.curve.len()).unwrap();
+    assert!(kept.rms <= 1.01 * least, "{} of {least}", kept.rms);
+}
+
 #[test]
 fn readings_that_stand_twice_do_not_count_twice() {
     let once = noisy(pulled(|s| [s, force(s, GAUGE)]));
