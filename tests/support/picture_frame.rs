@@ -38,7 +38,8 @@ pub struct PictureFrame {
     pub pulls: Vec<[f64; 2]>,
     /// Columns and rows of the measured mesh.
     pub measured: [usize; 2],
-    /// Exact positions of the vertices come with the frames.
+    /// Exact positions of the vertices come with the frames; the first is a micron high, since heights that are all the same
+    /// pass for not measured.
     pub shapes: bool,
     /// Seed of [`FORCE_NOISE`], which is told to the fit as well; `None` = exact.
     pub noise: Option<u64>,
@@ -110,11 +111,12 @@ impl PictureFrame {
             force: force + Vector3::from_fn(|_, _| noise()),
             point: None,
         });
-        let place = |m: &Vector2<f64>| placed(m, angle).push(0.0);
+        let place =
+            |(vertex, m): (usize, &Vector2<f64>)| placed(m, angle).push(if vertex == 0 { 1e-6 } else { 0.0 });
         Frame {
             cords: cords.collect(),
             poses: poses(angle).to_vec(),
-            positions: self.shapes.then(|| material.iter().map(place).collect()),
+            positions: self.shapes.then(|| material.iter().enumerate().map(place).collect()),
             ..Frame::default()
         }
     }
@@ -193,7 +195,7 @@ mod tests {
                 assert_eq!(clip.vertices.len(), 7);
                 for &vertex in &clip.vertices {
                     let now = pose * Point3::from(sequence.mesh.positions[vertex]);
-                    assert!((now.coords - shape[vertex]).norm() < 1e-16, "{}", clip.name);
+                    assert!((now.coords - shape[vertex]).xy().norm() < 1e-16, "{}", clip.name);
                 }
             }
         }

@@ -10,6 +10,7 @@
 
 mod edge;
 mod failed_points;
+mod heights;
 mod noise;
 mod poses;
 mod profile;
@@ -89,14 +90,16 @@ impl Inspection {
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 8] = [
+const CHECKS: [Check; 10] = [
     noise::check,
     size::check,
     failed_points::check,
+    heights::check,
     poses::check,
     weight::check,
     sag::check,
     edge::check,
+    sag::check_frames,
     pull::check,
 ];
 

@@ -95,7 +95,7 @@ pub fn effective_shear(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Optio
 }
 
 /// The linear part of the affine map that is closest to how points moved.
-fn affine_map(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Option<Matrix3x2<f64>> {
+pub(crate) fn affine_map(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Option<Matrix3x2<f64>> {
     let seen = || material.iter().zip(now).filter(|(_, x)| x.iter().all(|c| c.is_finite()));
     let (m, x) = (mean(seen().map(|(m, _)| *m)), mean(seen().map(|(_, x)| *x)));
     let (mut spread, mut image) = (Matrix2::zeros(), Matrix3x2::zeros());

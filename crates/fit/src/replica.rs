@@ -432,8 +432,11 @@ fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool
     high - low <= FLAT_SLOPE * side
 }
 
+/// No instrument sees heights that differ by less, m: they were not measured.
+pub(crate) const HEIGHT_SEEN: f64 = 1e-9;
+
 /// Whether an observed shape stays in its plane, but for what noise makes of it; `None` where less than half of it was
-/// seen, or where noise could hide a buckle.
+/// seen, no height was, or noise could hide a buckle.
 fn flatness(shape: Option<&Vec<f64>>, noise: Option<f64>) -> Option<bool> {
     let shape = shape?;
     let heights: Vec<f64> = shape.iter().skip(2).step_by(3).copied().filter(|z| z.is_finite()).collect();
@@ -443,6 +446,9 @@ fn flatness(shape: Option<&Vec<f64>>, noise: Option<f64>) -> Option<bool> {
     let count = heights.len() as f64;
     let mean = heights.iter().sum::<f64>() / count;
     let deviation = (heights.iter().map(|z| (z - mean) * (z - mean)).sum::<f64>() / count).sqrt();
+    if deviation <= HEIGHT_SEEN {
+        return None;
+    }
     if deviation > 3.0 * noise.unwrap_or(CLEAR) {
         return Some(false);
     }
@@ -476,7 +482,8 @@ mod tests {
         assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-5)), Some(false));
         assert_eq!(flatness(Some(&waves(1e-3, 100)), None), Some(false));
         assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-4)), None);
-        assert_eq!(flatness(Some(&waves(0.0, 100)), Some(7.5e-4)), Some(true));
+        assert_eq!(flatness(Some(&waves(1e-6, 100)), Some(7.5e-4)), Some(true));
+        assert_eq!(flatness(Some(&waves(0.0, 100)), Some(7.5e-4)), None);
         assert_eq!(flatness(Some(&waves(1e-4, 49)), Some(7.5e-5)), None);
         assert_eq!(flatness(None, None), None);
     }

@@ -23,6 +23,14 @@ impl Robust {
         let share = (2.0 / (root + 1.0)).sqrt();
         (residual * share, 1.0 / (root * share))
     }
+
+    /// Mean of ρ over noise of standard deviation 1, by the trapezoidal rule: what is left of its mean square.
+    pub fn mean_of_noise(&self) -> f64 {
+        let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+        let step = 0.05;
+        let rho = |z: f64| self.bend(z).0.powi(2);
+        (-160..=160).map(|i| step * f64::from(i)).map(|z| step * density(z) * rho(z)).sum()
+    }
 }
 
 #[cfg(test)]
@@ -36,6 +44,14 @@ mod tests {
         assert!((value - 1e-4).abs() < 1e-12 && (slope - 1.0).abs() < 1e-8);
         let (value, _) = robust.bend(-3e4);
         assert!(value < 0.0 && (value * value / (2.0 * 3.0 * 3e4) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn noise_that_is_far_below_the_limit_counts_in_full() {
+        assert!((Robust { limit: 1e3 }.mean_of_noise() - 1.0).abs() < 1e-5);
+        // Of the series z² − z⁴/4c² + z⁶/8c⁴ − 5 z⁸/64 c⁶ the terms fall slowly: at c = 10 the next is below 1e-6.
+        let expected = 1.0 - 3.0 / 400.0 + 15.0 / 8e4 - 5.0 * 105.0 / 64e6;
+        assert!((Robust { limit: 10.0 }.mean_of_noise() - expected).abs() < 1e-6);
     }
 
     #[test]

@@ -6,8 +6,8 @@
 //!
 //! σ² is the noise of a measurement, s² = ‖r‖²/(n − p) what is left of n measurements after p parameters. Noise errs
 //! afresh in every measurement, so it averages out. Misfit (a curve with too few points, hysteresis, a wrong model) errs
-//! alike in neighbours: n measurements then tell no more than p, and the factor n/p says so. It enters only where s² is
-//! above σ² beyond doubt (99 %).
+//! alike in neighbours: n measurements then tell no more than p, and the factor n/p says so. Only as much of it enters as s²
+//! is above what chance makes of σ² in 99 of 100 fits: a band does not leap where a misfit is first told from chance.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -29,12 +29,14 @@ pub struct Scatter {
     pub known: bool,
     /// s, root mean square of the residual per degree of freedom.
     pub residual: f64,
-    /// Misfit √(s² − σ²) where it exceeds the noise beyond doubt, else 0.
+    /// Misfit √(s² − qσ²), q what chance makes of the noise in 99 of 100 fits; 0 where s² is no more than that.
     pub misfit: f64,
     /// Measurements that a parameter can move.
     pub measurements: usize,
     /// Measurements less parameters.
     pub freedom: usize,
+    /// Mean square that noise alone leaves, over σ²: 1, less where large residuals count less.
+    pub expected: f64,
 }
 
 impl Scatter {
@@ -61,18 +63,19 @@ impl Scatter {
             Some(noise) => noise * noise,
             None => successive_variance(residual, tracks, &informative).unwrap_or(mean_square),
         };
-        let exceeds = freedom > 0
-            && match known {
-                Some(_) => sum > chi_square(freedom as f64, Z_99) * variance,
-                None => {
-                    // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
-                    let n = measurements as f64;
-                    1.0 - variance / mean_square > Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()
-                }
-            };
+        // The least share of what is left that is noise, if chance alone is at work.
+        let chance = match known {
+            Some(_) => chi_square(freedom.max(1) as f64, Z_99) / freedom.max(1) as f64,
+            None => {
+                // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
+                let n = measurements as f64;
+                1.0 / (1.0 - Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()).max(f64::MIN_POSITIVE)
+            }
+        };
+        let excess = if freedom > 0 { (mean_square - chance * variance).max(0.0) } else { 0.0 };
         // Noise that was estimated cannot exceed what is left.
-        let variance = if known.is_none() && !exceeds { mean_square } else { variance };
-        let misfit = if exceeds { (mean_square - variance).max(0.0).sqrt() } else { 0.0 };
+        let variance = if known.is_none() && excess == 0.0 { mean_square } else { variance };
+        let misfit = excess.sqrt();
         Self {
             noise: variance.sqrt(),
             known: known.is_some(),
@@ -80,6 +83,7 @@ impl Scatter {
             misfit,
             measurements,
             freedom,
+            expected: 1.0,
         }
     }
 }
@@ -90,7 +94,8 @@ impl Scatter {
         let freedom = self.freedom as f64;
         self.known
             && freedom > 0.0
-            && self.residual.powi(2) * freedom < chi_square(freedom, -Z_99) * self.noise.powi(2)
+            && self.residual.powi(2) * freedom
+                < chi_square(freedom, -Z_99) * self.expected * self.noise.powi(2)
     }
 
     /// The same in other units.
@@ -337,8 +342,15 @@ mod tests {
     #[test]
     fn what_no_measurement_sees_has_no_band() {
         let jacobian = DMatrix::from_row_slice(3, 3, &[1.0, 2.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 3.0]);
-        let scatter =
-            Scatter { noise: 1.0, known: true, residual: 1.0, misfit: 0.0, measurements: 3, freedom: 1 };
+        let scatter = Scatter {
+            noise: 1.0,
+            known: true,
+            residual: 1.0,
+            misfit: 0.0,
+            measurements: 3,
+            freedom: 1,
+            expected: 1.0,
+        };
         let covariance = Covariance::new(&jacobian, &scatter);
         assert_eq!((covariance.rank, Covariance::rank_of(&jacobian)), (2, 2));
         assert_eq!(covariance.half_band(&DVector::from_vec(vec![1.0, 0.0, 0.0])), None);

@@ -168,11 +168,15 @@ fn far_off(sequence: &SequenceReport) -> Option<(Grade, String)> {
 
 /// Shear of a sheet that may buckle, with bending that nobody measured.
 fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
-    let bends = stage.basis.assumed.iter().filter(|component| component.is_bending()).count();
-    let matters = stage.components == [Component::Shear] && bends > 0;
-    let said = "the sheet may buckle and its bending is assumed: the band reaches to a sheet that does not bend, and \
-                tests of bending (fit) would narrow it";
-    matters.then(|| (Grade::Amber, said.into()))
+    let bends = stage.basis.assumed.iter().filter(|component| component.is_bending());
+    let names: Vec<String> = bends.map(|component| component.to_string()).collect();
+    let matters = stage.components == [Component::Shear] && !names.is_empty();
+    let said = format!(
+        "the sheet may buckle and its bending is assumed ({}): the band reaches to a sheet that does not bend, and tests of \
+         bending (fit) would narrow it",
+        names.join(", ")
+    );
+    matters.then_some((Grade::Amber, said))
 }
 
 #[cfg(test)]

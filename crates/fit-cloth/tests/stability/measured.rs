@@ -87,11 +87,11 @@ impl Uniform<'_> {
         (vec![Isometry3::identity(), moved], vec![-force, force])
     }
 
-    /// Where the corners are seen, in their plane.
+    /// Where the corners are seen, in their plane but for a micron: heights that are all the same pass for not measured.
     fn flat(&self, strain: f64) -> Vec<Vector3<f64>> {
         let (side, angle) = (self.side, strain.asin());
         let [weft, warp] = [Vector3::x() * side, Vector3::new(angle.sin(), angle.cos(), 0.0) * side];
-        vec![Vector3::zeros(), weft, warp, weft + warp]
+        vec![Vector3::z() * 1e-6, weft, warp, weft + warp]
     }
 
     /// Weft stays, warp leans by γ, sin γ the strain: along each bar pulls σ times its length.
@@ -139,13 +139,14 @@ pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64
     sequence.clips[1].vertices = column(8);
     for (index, frame) in sequence.frames.iter_mut().enumerate() {
         // Sheared by so little that it does nothing but tell the frame from one at rest.
-        frame.poses[1].translation.y = if index == 0 { 0.0 } else { 2e-3 * side };
+        let sheared = if index == 0 { 0.0 } else { 2e-3 };
+        frame.poses[1].translation.y = sheared * side;
         let strain = if index == 0 { 0.0 } else { strains[index - 1] };
         // The way out of the plane that takes up the shortening: w = A/2 (1 − cos 2πx/L), A = 2L/π √δ.
         let height = side_of(index) * 2.0 * side / std::f64::consts::PI * (-strain).max(0.0).sqrt();
         let place = |p: &Vector3<f64>| {
             let turn = std::f64::consts::TAU * p.x / side;
-            Vector3::new(p.x * (1.0 + strain), p.y, 0.5 * height * (1.0 - turn.cos()))
+            Vector3::new(p.x * (1.0 + strain), p.y + sheared * p.x, 0.5 * height * (1.0 - turn.cos()))
         };
         frame.positions = Some(sequence.mesh.positions.iter().map(place).collect());
     }

@@ -18,27 +18,45 @@ const PLANE: f64 = 1e-4;
 /// Rigidity goes with the third power of the overhang: an edge off by a tenth of it is off by 30 %.
 const REFUSED: f64 = 0.1;
 
-/// An edge is off if it is by more than the lines are apart, which it is known to, and by more than this, m.
+/// An edge is off if it is by more than half of what the lines are apart, which several frames tell it to, and by more than
+/// this, m.
 const LEAST: f64 = 1e-3;
 
-/// Doubts, or refuses, a sequence whose sheet begins to hang elsewhere than at the table's edge.
-pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+/// Cloth lies so far above or below the edge's height at most, m, beside its thickness: tables and axes are off a little.
+const LEVEL: f64 = 2e-3;
+
+/// Doubts, or refuses, a sequence whose sheet begins to hang elsewhere than at the table's edge, or does not lie on the table.
+pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(table) = sequence.table else { return };
     let Some(up) = up(&table, &sequence.gravity) else { return };
     let noise = position_noise(sequence);
-    let (mut offs, mut lengths, mut apart) = (Vec::new(), Vec::new(), 0.0f64);
+    let (mut offs, mut lengths, mut levels, mut apart) = (Vec::new(), Vec::new(), Vec::new(), 0.0f64);
     for profile in profiles(sequence, &table, &up) {
         let Some(begin) = Begin::of(&profile.lines, noise) else { continue };
         offs.push(begin.outward);
         lengths.push(begin.length);
+        levels.push(begin.level);
         apart = apart.max(begin.apart);
     }
     if offs.is_empty() {
         return;
     }
     let frames = offs.len();
-    let (off, length) = (median(offs), median(lengths));
-    if off.abs() <= f64::max(apart, LEAST) {
+    let (off, length, level) = (median(offs), median(lengths), median(levels));
+    if level.abs() > LEVEL + fabric.thickness_m.unwrap_or(0.0) {
+        notices.push(Notice {
+            severity: Severity::Doubt,
+            sequence: sequence.name.clone(),
+            place: "test.toml table.edge_point_m".into(),
+            found: format!(
+                "cloth that lies {:.1} mm {} the edge on its table (median of {frames} frames)",
+                1e3 * level.abs(),
+                if level > 0.0 { "above" } else { "below" }
+            ),
+            expected: "an edge at the height of the cloth, in the axes of positions.npy".into(),
+        });
+    }
+    if off.abs() <= f64::max(0.5 * apart, LEAST) {
         return;
     }
     let refused = off.abs() > REFUSED * length;
@@ -68,6 +86,8 @@ struct Begin {
     outward: f64,
     /// How much hangs, m.
     length: f64,
+    /// Height of what lies on the table above the edge, m.
+    level: f64,
     /// The distance of the lines there, m.
     apart: f64,
 }
@@ -91,6 +111,6 @@ impl Begin {
         // Cloth that lies flat is as far out as at rest, but for where it was pushed.
         let pushed = median(flat.iter().map(|line| line.outward - line.rest).collect());
         let last = hanging[hanging.len() - 1];
-        Some(Self { outward: begin + pushed, length: last.rest - begin, apart: b.rest - a.rest })
+        Some(Self { outward: begin + pushed, length: last.rest - begin, level, apart: b.rest - a.rest })
     }
 }

@@ -39,10 +39,10 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// The lines on the table, and those past its edge; `None` without some of both.
-    pub(super) fn split(&self) -> Option<[&[Line]; 2]> {
+    /// The lines on the table, and those past its edge.
+    pub(super) fn split(&self) -> [&[Line]; 2] {
         let (on, past) = self.lines.split_at(self.past);
-        (!on.is_empty() && !past.is_empty()).then_some([on, past])
+        [on, past]
     }
 }
 

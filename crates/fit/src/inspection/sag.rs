@@ -1,4 +1,4 @@
-//! Weight against the way a sheet hangs off a table.
+//! Weight against the way a sheet hangs off a table, in most frames or in some.
 //!
 //! ```text
 //! ━━━━━┓╲          ━━━━━┓     ╱        ╱┏━━━━━         ━━━━━┓───────
@@ -9,10 +9,14 @@
 use super::profile::{Line, Profile, profiles, up};
 use super::{Notice, Severity, position_noise};
 use crate::frame::{Fabric, Sequence};
+use crate::io::shortened;
 
 /// Heights that differ less are alike, in standard deviations of a coordinate: a line is the mean of many, but a table need not
 /// be plane to a tenth of a millimetre.
 const ALIKE: f64 = 3.0;
+
+/// One frame that bends otherwise than the others is told from a wrinkle, in multiples of that.
+const ODD: f64 = 10.0;
 
 /// Nothing that is woven or knitted is stiffer, N·m: sailcloth and leather stay below a thousandth.
 const STIFFEST: f64 = 1e-2;
@@ -40,7 +44,8 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     let profiles = profiles(sequence, &table, &up);
     let sags: Vec<Sag> = profiles.iter().filter_map(Sag::of).collect();
     let alike = ALIKE * position_noise(sequence);
-    let bent: Vec<&Sag> = sags.iter().filter(|sag| sag.most() > alike).collect();
+    let hanging = sags.iter().filter(|sag| sag.overhang > 0.0);
+    let bent: Vec<&Sag> = hanging.filter(|sag| sag.most() > alike).collect();
     let Some(most) = bent.iter().max_by(|a, b| a.most().total_cmp(&b.most())) else {
         let Some(longest) = sags.iter().max_by(|a, b| a.overhang.total_cmp(&b.overhang)) else { return };
         let weight = fabric.areal_density_kg_m2 * sequence.gravity.norm();
@@ -71,10 +76,35 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     refuse(place, found, expected);
 }
 
+/// Doubts a sequence in which single frames do not hang as the others do.
+pub(super) fn check_frames(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let Some(table) = sequence.table else { return };
+    let Some(up) = up(&table, &sequence.gravity) else { return };
+    let least = ODD * ALIKE * position_noise(sequence);
+    let is_odd = |sag: &Sag| sag.most() > least && (!sag.lies || sag.way().causes().is_some());
+    let sags = profiles(sequence, &table, &up).iter().filter_map(Sag::of).collect::<Vec<_>>();
+    let frames: Vec<String> = sags.iter().filter(|s| is_odd(s)).map(|sag| sag.frame.to_string()).collect();
+    if frames.is_empty() {
+        return;
+    }
+    notices.push(Notice {
+        severity: Severity::Doubt,
+        sequence: sequence.name.clone(),
+        place: "positions.npy".into(),
+        found: format!(
+            "sheets that do not hang down past the edge in frame {}, unlike those of the other frames",
+            shortened(&frames.join(", "), 60)
+        ),
+        expected: "one way to hang: such frames left out, or their axes as in the others".into(),
+    });
+}
+
 /// How a sheet bends in one frame.
 struct Sag {
     frame: usize,
-    /// Length past the edge, m.
+    /// Some of it lies on the table.
+    lies: bool,
+    /// Length past the edge, m; 0 where none or all of it is.
     overhang: f64,
     /// The range of heights of what lies on the table, m.
     on: f64,
@@ -93,17 +123,18 @@ struct Way {
 
 impl Sag {
     fn of(profile: &Profile) -> Option<Self> {
-        let [on, past] = profile.split()?;
+        let [on, past] = profile.split();
         let range = |lines: &[Line]| {
             let ends = lines.iter().fold([f64::MAX, f64::MIN], |[low, high], line| {
                 [low.min(line.height), high.max(line.height)]
             });
-            ends[1] - ends[0]
+            f64::max(ends[1] - ends[0], 0.0)
         };
-        let (first, last) = (on[0], past[past.len() - 1]);
+        let (first, last) = (profile.lines.first()?, profile.lines.last()?);
         Some(Self {
             frame: profile.frame,
-            overhang: last.rest - on[on.len() - 1].rest,
+            lies: !on.is_empty(),
+            overhang: last.rest - on.last().map_or(last.rest, |line| line.rest),
             on: range(on),
             past: range(past),
             rise: last.height - first.height,

@@ -3,9 +3,10 @@
 
 use super::{Notice, Severity};
 use crate::frame::{Fabric, Sequence};
-use crate::measure::clip_centres;
+use crate::measure::{affine_map, clip_centres, mean};
 use crate::specimen::rest_size;
-use nalgebra::Vector3;
+use cloth_sim::mesh::Mesh;
+use nalgebra::{Vector2, Vector3};
 use std::ops::RangeInclusive;
 
 /// How many of other units make a metre.
@@ -18,8 +19,10 @@ const LARGER: f64 = 5.0;
 const LARGE: f64 = 2.0;
 /// Hardly any cloth is pulled to so many times its length; elastic tapes are.
 const STRETCHED: f64 = 4.0;
-/// What gravity is on earth, m/s², with room for a rounded figure.
-const GRAVITY: RangeInclusive<f64> = 9.0..=10.5;
+/// What gravity is on earth, m/s², from the equator to the poles: bending stiffness goes with it.
+const GRAVITY: RangeInclusive<f64> = 9.76..=9.84;
+/// In another unit it may be rounded.
+const ROUNDED: RangeInclusive<f64> = 9.5..=10.2;
 /// Gravity in other units, over that in m/s².
 const GRAVITY_UNITS: [(f64, &str); 4] = [
     (100.0, "cm/s²: divide by 100"),
@@ -30,14 +33,20 @@ const GRAVITY_UNITS: [(f64, &str); 4] = [
 /// What fabrics weigh, kg/m²: from chiffon to the heaviest canvas.
 const AREAL_DENSITY: RangeInclusive<f64> = 0.01..=3.0;
 
-/// Compares the specimen with its sample, its clips' distances with those at rest, gravity and areal density with what
-/// there is.
+/// Lengths at rest and in material coordinates may differ by this share, and by so many times the error of their ratio: less
+/// than the strains at which a stiff cloth is measured.
+const SAME_REST: f64 = 5e-4;
+const SURE: f64 = 4.0;
+
+/// Compares the specimen with its sample, its material coordinates with its rest shape, its clips' distances with those at
+/// rest, gravity and areal density with what there is.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let found = [
         specimen(fabric, sequence),
         separation(sequence),
         gravity(&sequence.gravity),
         areal_density(fabric, sequence),
+        material(sequence),
     ];
     notices.extend(found.into_iter().flatten().map(|(severity, place, found, expected)| Notice {
         severity,
@@ -111,7 +120,7 @@ fn gravity(gravity: &Vector3<f64>) -> Option<Finding> {
         return None;
     }
     let found = format!("{size:.4} m/s²");
-    let unit = GRAVITY_UNITS.into_iter().find(|(unit, _)| GRAVITY.contains(&(size / unit)));
+    let unit = GRAVITY_UNITS.into_iter().find(|(unit, _)| ROUNDED.contains(&(size / unit)));
     let (severity, remedy) = unit
         .map_or((Severity::Doubt, "or zero, which leaves weight out"), |(_, remedy)| {
             (Severity::Refusal, remedy)
@@ -130,6 +139,30 @@ fn areal_density(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     })
 }
 
+/// Rest positions as an affine map of material coordinates, x = A m + b: A stretches nothing.
+fn material(sequence: &Sequence) -> Option<Finding> {
+    let Mesh { material, positions, .. } = &sequence.mesh;
+    let map = affine_map(material, positions)?;
+    let apart = |(m, x): (&Vector2<f64>, &Vector3<f64>)| x - map * m;
+    let middle = mean(material.iter().zip(positions).map(apart));
+    let residual: f64 =
+        material.iter().zip(positions).map(|pair| (apart(pair) - middle).norm_squared()).sum();
+    // The slope of a line through points that are spread evenly over the shorter side.
+    let [side, _] = ascending(rest_size(sequence).ok()?);
+    let error = (12.0 * residual).sqrt() / (material.len() as f64 * side);
+    let stretches = map.singular_values().map(|stretch| stretch - 1.0);
+    let off = if stretches[0].abs() > stretches[1].abs() { stretches[0] } else { stretches[1] };
+    (sequence.table.is_none() && off.abs() > f64::max(SAME_REST, SURE * error)).then(|| {
+        let found = format!(
+            "a specimen at rest {:.2} % {} than its material coordinates vt",
+            100.0 * off.abs(),
+            if off > 0.0 { "longer" } else { "shorter" }
+        );
+        let expected = "the same lengths: v flat and free, and vt along weft and warp in metres; what differs is taken for strain";
+        (Severity::Doubt, "mesh.obj v", found, expected.into())
+    })
+}
+
 fn ascending([a, b]: [f64; 2]) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }
@@ -143,8 +176,8 @@ mod tests {
     use cloth_sim::mesh::{Diagonals, Grid};
     use nalgebra::Isometry3;
 
-    /// A strip of so many metres of a sample of 80 × 40 mm, pulled to so many times its length.
-    fn noticed(length: f64, width: f64, times: f64, gravity: f64, density: f64) -> Vec<String> {
+    /// A strip of so many metres, pulled to so many times its length.
+    fn strip(length: f64, width: f64, times: f64, gravity: f64) -> Sequence {
         let grid = Grid { columns: 2, rows: 2, width: length, height: width, diagonals: Diagonals::Forward };
         let clip = |name: &str, vertices: [usize; 2]| Clip {
             name: name.into(),
@@ -153,7 +186,7 @@ mod tests {
         };
         let shift = |by: f64| Isometry3::translation(by, 0.0, 0.0);
         let frame = |by| Frame { poses: vec![shift(0.0), shift(by)], ..Frame::default() };
-        let mut sequence = Sequence {
+        Sequence {
             name: "strip".into(),
             kind: Kind::StretchWeft,
             gravity: Vector3::new(0.0, 0.6, -0.8) * gravity,
@@ -163,7 +196,11 @@ mod tests {
             mesh: grid.mesh().unwrap(),
             clips: vec![clip("fixed", [0, 2]), clip("moving", [1, 3])],
             frames: vec![frame(0.0), frame((times - 1.0) * length)],
-        };
+        }
+    }
+
+    /// Of a sample of 80 × 40 mm.
+    fn noticed_of(mut sequence: Sequence, density: f64) -> Vec<String> {
         let fabric = Fabric {
             name: "knit".into(),
             width_m: 0.08,
@@ -178,9 +215,13 @@ mod tests {
         notices.iter().map(|notice| format!("{:?}: {notice}", notice.severity)).collect()
     }
 
+    fn noticed(length: f64, width: f64, times: f64, gravity: f64, density: f64) -> Vec<String> {
+        noticed_of(strip(length, width, times, gravity), density)
+    }
+
     #[test]
     fn what_can_be_is_no_notice() {
-        for gravity in [0.0, 9.81, 9.78, 10.0] {
+        for gravity in [0.0, 9.81, 9.78, 9.83] {
             assert_eq!(noticed(0.08, 0.04, 1.1, gravity, 0.3), [""; 0]);
         }
         // A part of the sample, cut either way; another strip than the first; a tape.
@@ -230,7 +271,22 @@ mod tests {
                 format!("gravity_m_s2: found {gravity:.4} m/s², expected 9.81 m/s² in all ({unit}");
             assert!(found[0].starts_with("Refusal") && found[0].contains(&expected), "{found:?}");
         }
-        assert!(noticed(0.08, 0.04, 1.0, 5.0, 0.3)[0].starts_with("Doubt"));
+        for gravity in [5.0, 10.0] {
+            assert!(noticed(0.08, 0.04, 1.0, gravity, 0.3)[0].starts_with("Doubt"));
+        }
+    }
+
+    #[test]
+    fn a_rest_shape_that_is_not_as_long_as_its_material_coordinates_is_doubted() {
+        for (factor, said) in [(0.99, "1.01 % longer"), (1.002, "0.20 % shorter")] {
+            let mut sequence = strip(0.08, 0.04, 1.1, 0.0);
+            sequence.mesh.material.iter_mut().for_each(|m| m.x *= factor);
+            let found = noticed_of(sequence, 0.3);
+            assert!(found[0].starts_with("Doubt") && found[0].contains(said), "{found:?}");
+        }
+        let mut sequence = strip(0.08, 0.04, 1.1, 0.0);
+        sequence.mesh.material.iter_mut().for_each(|m| *m *= 1.0003);
+        assert_eq!(noticed_of(sequence, 0.3), [""; 0]);
     }
 
     #[test]

@@ -227,7 +227,10 @@ fn judge(
 ) -> Judgement {
     let Outcome { residual, jacobian, .. } = &growth.outcome;
     let noise = simulation.noise_is_known().then_some(1.0);
-    let scatter = Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), tracks, noise);
+    let scatter = Scatter {
+        expected: simulation.task().robust.map_or(1.0, |robust| robust.mean_of_noise()),
+        ..Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), tracks, noise)
+    };
     let observed = is_observed(plan, growth, &scatter, others);
     let mut covariance = Covariance::new(jacobian, &scatter);
     let groups = others.groups(&plan.components);

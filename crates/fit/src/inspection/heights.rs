@@ -1,0 +1,23 @@
+//! Heights that are all the same, as a camera that sees no depth has them.
+
+use super::{Notice, Severity, is_seen};
+use crate::frame::{Fabric, Kind, Sequence};
+use crate::replica::HEIGHT_SEEN;
+use nalgebra::Vector3;
+
+/// Says of a sheared sheet that its shapes do not tell whether it buckled.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let places = sequence.frames.iter().flat_map(|frame| &frame.positions).flatten();
+    let seen: Vec<&Vector3<f64>> = places.filter(|place| is_seen(place)).collect();
+    let alike = |axis: &usize| seen.iter().all(|place| (place[*axis] - seen[0][*axis]).abs() <= HEIGHT_SEEN);
+    if sequence.kind != Kind::Shear || seen.is_empty() || !(0..3).any(|axis| alike(&axis)) {
+        return;
+    }
+    notices.push(Notice {
+        severity: Severity::Remark,
+        sequence: sequence.name.clone(),
+        place: "positions.npy".into(),
+        found: "one and the same height of every vertex in every frame: it was not measured".into(),
+        expected: "heights as they were seen, which tell whether the sheet buckled: it is fitted as one that nobody saw".into(),
+    });
+}
