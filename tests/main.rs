@@ -7,6 +7,7 @@ mod closed_form;
 mod contradiction;
 mod coverage;
 mod droop;
+mod faults;
 mod metamorphic;
 mod outliers;
 mod published;

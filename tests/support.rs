@@ -4,6 +4,8 @@
 pub mod cantilever;
 #[path = "support/elastica.rs"]
 pub mod elastica;
+#[path = "support/fault.rs"]
+pub mod fault;
 #[path = "support/hang.rs"]
 pub mod hang;
 #[path = "support/own_mesh.rs"]
