@@ -269,10 +269,30 @@ fn shapes_that_rise_against_gravity_are_exit_3_and_name_the_field() {
     assert!(text.contains("fitted to the shapes of bend-weft"), "{text}");
     assert!(warnings.contains("warning: sequence bend-warp, test.toml gravity_m_s2"), "{warnings}");
     fs::remove_dir_all(path.join("set/bend-weft")).unwrap();
-    let output = fit("bend", &path, "none", &["--known", "both/material.json"]);
-    let [_, errors] = said(&output);
-    assert_eq!(output.status.code(), Some(3), "{errors}");
-    for words in ["error: sequence bend-warp, test.toml gravity_m_s2", "the sign of gravity", "mm above"] {
-        assert!(errors.contains(words), "{words}: {errors}");
+    // Though stretch and shear could be fitted: they are not what was asked for.
+    for more in [&["--known", "both/material.json"][..], &[]] {
+        let output = fit("bend", &path, "none", more);
+        let [_, errors] = said(&output);
+        assert_eq!(output.status.code(), Some(3), "{errors}");
+        for words in ["error: sequence bend-warp, test.toml gravity_m_s2", "the sign of gravity", "mm above"]
+        {
+            assert!(errors.contains(words), "{words}: {errors}");
+        }
+    }
+}
+
+#[test]
+fn without_shapes_bending_is_refused_and_the_rest_is_fitted() {
+    let (_keep, path) = folder();
+    for name in ["shear", "bend-weft", "bend-warp"] {
+        fs::remove_file(path.join("set").join(name).join("positions.npy")).unwrap();
+    }
+    let output = fit("fit", &path, "out", &["--variant", "linear"]);
+    let [text, warnings] = said(&output);
+    assert_eq!(output.status.code(), Some(4), "{warnings}");
+    assert!(warnings.contains("sequence bend-weft, positions.npy: found nothing"), "{warnings}");
+    assert!(text.contains("its bending is assumed (bend-weft, bend-warp, bend-diagonal)"), "{text}");
+    for (curve, there) in [("stretch-weft", true), ("shear", true), ("bend-weft", false)] {
+        assert_eq!(path.join("out/curves").join(format!("{curve}.csv")).exists(), there, "{curve}");
     }
 }

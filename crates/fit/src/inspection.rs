@@ -10,12 +10,12 @@
 
 mod edge;
 mod failed_points;
-mod heights;
 mod noise;
 mod poses;
 mod profile;
 pub(crate) mod pull;
 mod sag;
+mod shapes;
 mod size;
 mod weight;
 
@@ -90,11 +90,12 @@ impl Inspection {
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 10] = [
+const CHECKS: [Check; 11] = [
     noise::check,
+    shapes::check_presence,
     size::check,
     failed_points::check,
-    heights::check,
+    shapes::check_heights,
     poses::check,
     weight::check,
     sag::check,

@@ -9,6 +9,7 @@
 //!
 //! Two laboratories differ by 15–25 % on one fabric (Cao et al. 2008), so a tenth is good and a third is little.
 
+use crate::frame::Kind;
 use crate::incremental::FitReport;
 use crate::inspection::{Notice, Severity};
 use crate::report::{Sample, SequenceReport, StageReport};
@@ -166,17 +167,32 @@ fn far_off(sequence: &SequenceReport) -> Option<(Grade, String)> {
     (grade > Grade::Green).then_some((grade, said))
 }
 
-/// Shear of a sheet that may buckle, with bending that nobody measured.
+/// What shear was fitted with that nobody measured: bending of a sheet that may buckle, yarns of a strip cut on the bias.
 fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
-    let bends = stage.basis.assumed.iter().filter(|component| component.is_bending());
-    let names: Vec<String> = bends.map(|component| component.to_string()).collect();
-    let matters = stage.components == [Component::Shear] && !names.is_empty();
-    let said = format!(
-        "the sheet may buckle and its bending is assumed ({}): the band reaches to a sheet that does not bend, and tests of \
-         bending (fit) would narrow it",
-        names.join(", ")
-    );
-    matters.then_some((Grade::Amber, said))
+    let names = |is_meant: &dyn Fn(Component) -> bool| {
+        let meant = stage.basis.assumed.iter().filter(|&&component| is_meant(component));
+        meant.map(|component| component.to_string()).collect::<Vec<_>>().join(", ")
+    };
+    if stage.components != [Component::Shear] {
+        return None;
+    }
+    let bends = names(&Component::is_bending);
+    if !bends.is_empty() {
+        let said = format!(
+            "the sheet may buckle and its bending is assumed ({bends}): the band reaches to a sheet that does not bend, and \
+             tests of bending (fit) would narrow it"
+        );
+        return Some((Grade::Amber, said));
+    }
+    let stretches = names(&Component::is_stretch);
+    let is_bias = stage.sequences.iter().any(|sequence| sequence.kind == Kind::StretchBias);
+    (is_bias && !stretches.is_empty()).then(|| {
+        let said = format!(
+            "yarns that hardly give are assumed ({stretches}): where they do, shear comes out too soft, and tests of stretch \
+             would tell"
+        );
+        (Grade::Amber, said)
+    })
 }
 
 #[cfg(test)]

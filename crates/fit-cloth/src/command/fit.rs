@@ -13,6 +13,7 @@ use cloth_fit::check::{check_material, refuse_unstable};
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::incremental::{self, Finished, FitReport, Memory};
+use cloth_fit::inspection::inspect;
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_result;
@@ -43,6 +44,10 @@ pub fn run(
     if !tests.is_empty() && !has_any(&set, &tests) {
         let error = nothing(&flags.on.set, &set, &tests);
         return Err(with_option(error, "fit-cloth fit takes what a set has").into());
+    }
+    let inspection = inspect(&set);
+    if !has_any(&inspection.set, &tests) {
+        inspection.check_refusals(&tests)?;
     }
     let models = flags.model.models();
     let given = flags.known.as_deref().map(|path| read_known(path, out.path(), flags)).transpose()?;

@@ -176,8 +176,15 @@ fn unseen_points(row: &mut Row, seed: u64) -> bool {
         false => unit * random.random_range(-1.0..1.0),
     });
     let freedom = 3 * n - seen;
-    let scatter =
-        Scatter { noise: 1.0, known: true, residual: 1.0, misfit: 0.0, measurements: 3 * n, freedom };
+    let scatter = Scatter {
+        noise: 1.0,
+        known: true,
+        residual: 1.0,
+        misfit: 0.0,
+        measurements: 3 * n,
+        freedom,
+        expected: 1.0,
+    };
     let covariance = Covariance::new(&jacobian, &scatter);
     let deviations = covariance.standard_deviations();
     // What is seen, alone: (JᵀJ)⁻¹.

@@ -65,6 +65,14 @@ fn doubted(notices: &[Notice], said: &[&str]) {
 }
 
 #[test]
+fn a_bending_test_without_shapes_is_refused() {
+    let notices = noticed("bend-warp", |_, sequence| {
+        sequence.frames.iter_mut().for_each(|frame| frame.positions = None);
+    });
+    refused(&notices, &["positions.npy", "found nothing", "bending needs them"]);
+}
+
+#[test]
 fn a_frame_that_hangs_otherwise_than_the_others_is_doubted() {
     for axis in [0, 2] {
         let notices = noticed("bend-warp", |_, sequence| {

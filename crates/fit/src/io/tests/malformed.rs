@@ -584,10 +584,6 @@ fn shapes() {
             "bend/positions.npy file: found no observed vertex in frame 1, expected one at least in every frame",
         ),
         (
-            &|place| fs::remove_file(array(place)).unwrap(),
-            "bend/positions.npy file: found nothing, expected the measured shapes, here or in frames/: bending needs them",
-        ),
-        (
             &|place| fs::create_dir(place.join("bend/frames")).unwrap(),
             "bend/positions.npy file: found positions.npy and frames/, expected either the array or the folder frames/, not both",
         ),

@@ -1,12 +1,26 @@
-//! Heights that are all the same, as a camera that sees no depth has them.
+//! Shapes that are missing, or whose heights are all the same, as a camera that sees no depth has them.
 
 use super::{Notice, Severity, is_seen};
 use crate::frame::{Fabric, Kind, Sequence};
 use crate::replica::HEIGHT_SEEN;
 use nalgebra::Vector3;
 
+/// Refuses a bending test without shapes.
+pub(super) fn check_presence(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    if sequence.table.is_none() || sequence.frames.iter().any(|frame| frame.positions.is_some()) {
+        return;
+    }
+    notices.push(Notice {
+        severity: Severity::Refusal,
+        sequence: sequence.name.clone(),
+        place: "positions.npy".into(),
+        found: "nothing".into(),
+        expected: "the measured shapes, there or in frames/: bending needs them".into(),
+    });
+}
+
 /// Says of a sheared sheet that its shapes do not tell whether it buckled.
-pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let places = sequence.frames.iter().flat_map(|frame| &frame.positions).flatten();
     let seen: Vec<&Vector3<f64>> = places.filter(|place| is_seen(place)).collect();
     let alike = |axis: &usize| seen.iter().all(|place| (place[*axis] - seen[0][*axis]).abs() <= HEIGHT_SEEN);
