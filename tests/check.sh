@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What to run before a push: tests, format, lints, documentation. `tests/check.sh --full` runs the ignored tests too,
+# What to run before a push: tests, format, lints, documentation. `tests/check.sh --long` runs the ignored tests too,
 # which take the full counts (100 000 states, 100 seeds).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -11,6 +11,6 @@ cargo clippy --workspace --all-targets -- -D warnings
 # The target on real measurements is left out of plain test runs, and so of --all-targets.
 cargo clippy -p fit-cloth-tests --test real -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-if [ "${1:-}" = "--full" ]; then
+if [ "${1:-}" = "--long" ]; then
     cargo test --workspace -- --ignored --nocapture
 fi

@@ -10,7 +10,7 @@
 
 use crate::error::Result;
 use crate::frame::{Kind, MeasurementSet};
-use crate::inspection::{Inspection, Notice, inspect};
+use crate::inspection::{Notice, inspect};
 use crate::knowledge::Knowledge;
 use crate::report::{Basis, Level, SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
@@ -203,13 +203,17 @@ pub fn resume(
     watch: &mut Watch<'_>,
 ) -> Result<FitReport> {
     let inspection = inspect(set);
-    let Inspection { set, notices, .. } = &inspection;
+    // What is noticed of other tests is no matter of these curves.
+    let kinds: Vec<Kind> = wanted.iter().flat_map(|stage| stage.kinds()).collect();
+    let of_kind = |name: &str| set.sequences.iter().any(|s| s.name == name && kinds.contains(&s.kind));
+    let notices = inspection.notices.iter().filter(|notice| of_kind(&notice.sequence)).cloned().collect();
+    let set = &inspection.set;
     let mut report = FitReport {
         model: settings.model,
         variant: settings.variant,
         stages: Vec::new(),
         failures: Vec::new(),
-        notices: notices.clone(),
+        notices,
         knowledge: known.clone(),
     };
     let mut first_error = None;

@@ -55,7 +55,7 @@ pub fn predict(
     let inspection = inspect(&MeasurementSet { fabric: set.fabric.clone(), sequences: alone });
     let sequences = inspection.set.sequences.iter();
     let sequences: Vec<(&Sequence, Parts)> =
-        sequences.map(|sequence| (sequence, parts(sequence.kind, set, curves, settings))).collect();
+        sequences.map(|sequence| (sequence, parts(sequence.kind, set, curves, assumed, settings))).collect();
     if sequences.is_empty() {
         inspection.check_refusals(kinds)?;
     }
@@ -124,11 +124,17 @@ fn mechanics(source: cloth_sim::error::Error) -> Error {
 }
 
 /// What a test's replica consists of: in strips pulled along their yarns shear and bending play no part. Without any
-/// bending curve a sheet between clips stays in its plane: in space it would crumple. Only a sheet off a table has shear that
-/// is not known.
-fn parts(kind: Kind, set: &MeasurementSet, curves: &Curves, settings: &Settings) -> Parts {
+/// bending, known or assumed, a sheet between clips stays in its plane: in space it would crumple. Only a sheet off a table
+/// has shear that is not known.
+fn parts(
+    kind: Kind,
+    set: &MeasurementSet,
+    curves: &Curves,
+    assumed: &BTreeMap<Component, f64>,
+    settings: &Settings,
+) -> Parts {
     let stretches = matches!(kind, Kind::StretchWeft | Kind::StretchWarp);
-    let bends = curves.components().any(Component::is_bending);
+    let bends = curves.components().chain(assumed.keys().copied()).any(Component::is_bending);
     let off_table = matches!(kind, Kind::BendWeft | Kind::BendWarp | Kind::BendBias);
     let takes_part = |component: Component| match component {
         _ if component.is_stretch() => true,

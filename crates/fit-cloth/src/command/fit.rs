@@ -12,12 +12,12 @@ use crate::text;
 use cloth_fit::check::{check_material, refuse_unstable};
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::incremental::{self, Finished, FitReport, Memory};
+use cloth_fit::incremental::{self, Failure as Failed, Finished, FitReport, Memory};
 use cloth_fit::inspection::inspect;
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_result;
-use cloth_sim::material::{Compression, Model};
+use cloth_sim::material::{Component, Compression, Model};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -78,10 +78,15 @@ pub fn run(
     for Fitted { report, material } in &results {
         // Those that were given are among them.
         warn_of_defects(telling, &report.model.to_string(), &check_material(material)?);
-        for failure in &report.failures {
+        // Why a sequence was refused has been said.
+        let is_said = |failure: &&Failed| report.notices.iter().any(|n| n.to_string() == failure.reason);
+        for failure in report.failures.iter().filter(|failure| !is_said(failure)) {
             warn(telling, &format!("{}: {}", report.model, failure.in_words()));
         }
-        for missing in goal.components().filter_map(|component| text::missing(report, component)) {
+        let has_failed =
+            |component: &Component| report.failures.iter().any(|f| f.components.contains(component));
+        let others = goal.components().filter(|component| !has_failed(component));
+        for missing in others.filter_map(|component| text::missing(report, component)) {
             warn(telling, &format!("{}: {missing}", report.model));
         }
     }

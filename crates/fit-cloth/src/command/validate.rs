@@ -63,6 +63,11 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     if !fit::has_any(&set, &kinds) {
         return Err(with_option(fit::nothing(&options.on.set, &set, &kinds), "--kinds, --all").into());
     }
+    if options.kinds.is_empty() && !options.all && kinds.len() == Kind::ALL.len() {
+        let taken = "all tests of the set are taken, since it has neither complex-shear nor corner-pull, which no fit uses: curves \
+                     that were fitted to them are not put to the test by them";
+        warn(telling, taken);
+    }
     warn_of_defects(telling, &options.material.display().to_string(), &check_material(&material)?);
     let progress = Progress::new("validating", !telling.quiet);
     let validation =

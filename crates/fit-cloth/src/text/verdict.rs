@@ -63,9 +63,12 @@ fn limit(stage: &StageReport) -> String {
 
 /// What to measure next; nothing where a reason for the grade says so already.
 fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
-    if let Some((name, frame)) = stage.sequences.iter().find_map(|s| Some((&s.name, s.outliers.first()?))) {
+    let odd = stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty());
+    let odd: Vec<String> = odd.map(|s| format!("frame {} of {}", some(&s.outliers), s.name)).collect();
+    if !odd.is_empty() {
         return Some(format!(
-            "frame {frame} of {name} is far off the rest: look at it before anything else, or fit with --robust"
+            "far off the rest: {}: look there before anything else, or fit with --robust",
+            list(odd)
         ));
     }
     if !stage.curve.observed {
@@ -85,7 +88,7 @@ fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
     reasons.is_empty().then_some(said)
 }
 
-/// Frames that take no part, and frames to look at.
+/// Frames that take no part, and frames whose shapes tell little.
 fn oddities(stage: &StageReport) -> String {
     let mut text = String::new();
     for dropped in &stage.dropped {
@@ -96,10 +99,7 @@ fn oddities(stage: &StageReport) -> String {
         );
     }
     for sequence in &stage.sequences {
-        let SequenceReport { name, outliers, multi_stable, .. } = sequence;
-        if !outliers.is_empty() {
-            let _ = write!(text, " Look at frame {} of {name}: far off the rest.", some(outliers));
-        }
+        let SequenceReport { name, multi_stable, .. } = sequence;
         if !multi_stable.is_empty() {
             let _ = write!(
                 text,

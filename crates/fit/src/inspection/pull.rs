@@ -52,6 +52,8 @@ pub(crate) struct Pull {
     weight: f64,
     /// Standard deviation of a force, N: declared, else estimated.
     noise: f64,
+    /// Shapes were measured, and with them the rest.
+    has_shapes: bool,
     /// The load cycle that it starts with.
     cycle: usize,
     readings: Vec<Reading>,
@@ -142,6 +144,7 @@ impl Pull {
             width: sides[1] - sides[0],
             weight: (first.mass_kg + second.mass_kg) * sequence.gravity.dot(&axis).abs(),
             noise: declared.unwrap_or_else(|| noise(&readings)),
+            has_shapes: sequence.frames.iter().any(|frame| frame.positions.is_some()),
             cycle: sequence.frames.iter().find_map(|frame| frame.cycle).unwrap_or(0),
             readings,
         })

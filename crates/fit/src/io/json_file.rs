@@ -58,6 +58,10 @@ fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
         )
     } else {
         let (found, expected) = message.split_once(", expected ").unwrap_or((message, "JSON"));
+        // No value where the file begins: it is another kind of file.
+        let is_other = key.is_empty() && found == "expected value";
+        let (found, expected) =
+            if is_other { ("no JSON", "a JSON file, as material.json") } else { (found, expected) };
         let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
         let key = if key.is_empty() { "JSON" } else { key };
         (key.to_string(), found, if expected == "f64" { "a number" } else { expected })

@@ -7,6 +7,8 @@ pub(super) struct Polynomial {
     origin: f64,
     scale: f64,
     coefficients: DVector<f64>,
+    /// Covariance of the coefficients; `None` where no point is left over to judge them by.
+    covariance: Option<DMatrix<f64>>,
 }
 
 impl Polynomial {
@@ -22,8 +24,11 @@ impl Polynomial {
             return None;
         }
         let values = DVector::from_iterator(points.len(), points.iter().map(|point| point[1]));
-        let coefficients = powers.svd(true, true).solve(&values, 1e-12).ok()?;
-        Some(Self { origin, scale, coefficients })
+        let coefficients = powers.clone().svd(true, true).solve(&values, 1e-12).ok()?;
+        let left = points.len() - columns;
+        let variance = (&values - &powers * &coefficients).norm_squared() / left.max(1) as f64;
+        let covariance = (powers.transpose() * &powers).try_inverse().filter(|_| left > 0);
+        Some(Self { origin, scale, coefficients, covariance: covariance.map(|inverse| inverse * variance) })
     }
 
     pub(super) fn at(&self, x: f64) -> f64 {
@@ -35,6 +40,13 @@ impl Polynomial {
         let t = (x - self.origin) / self.scale;
         let terms = self.coefficients.iter().enumerate().skip(1).rev();
         terms.fold(0.0, |sum, (power, coefficient)| sum * t + power as f64 * coefficient) / self.scale
+    }
+
+    /// Standard deviation of the polynomial there.
+    pub(super) fn error(&self, x: f64) -> Option<f64> {
+        let t = (x - self.origin) / self.scale;
+        let powers = DVector::from_fn(self.coefficients.len(), |power, _| t.powi(power as i32));
+        Some(powers.dot(&(self.covariance.as_ref()? * &powers)).max(0.0).sqrt())
     }
 
     /// Σ (value − polynomial)².

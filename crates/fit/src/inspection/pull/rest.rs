@@ -1,5 +1,6 @@
 //! A strip that is not free where it should be: put in under tension, slack, or with a load cell whose zero is off.
 
+use super::polynomial::Polynomial;
 use super::toe::{self, CLEAR, Toe};
 use super::{Notice, Pull, Severity, digits};
 
@@ -7,15 +8,17 @@ use super::{Notice, Pull, Severity, digits};
 const NEAR: f64 = 0.01;
 /// Of the clips' travel: over so far a force hardly changes, and it is no tension.
 const FAR: f64 = 0.5;
+/// Of the stress at the first reading: a free length that is unsure by more makes a band useless.
+const UNSURE: f64 = 0.05;
 /// Of the largest force: an error that matters however little it shifts the free length.
 const LARGE: f64 = 0.01;
 
 /// Judges the force at the gauge length, and where force begins.
 pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     let (loading, near) = (pull.first_loading(), NEAR * pull.travel());
-    // What begins further out was never seen at rest.
-    if loading.first().is_none_or(|row| row[0] > pull.gauge + near) {
-        return Vec::new();
+    let Some([first, _]) = loading.first().copied() else { return Vec::new() };
+    if first > pull.gauge + near {
+        return beyond(pull, &loading).into_iter().collect();
     }
     match toe::find(&loading, pull.threshold(), near) {
         Some(toe) => seen(pull, &toe, near),
@@ -29,6 +32,34 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
 fn matters(pull: &Pull, force: f64, shift: Option<f64>) -> bool {
     let shifts = shift.is_some_and(|shift| (NEAR..FAR).contains(&(shift.abs() / pull.travel())));
     force.abs() > pull.threshold() && (shifts || force.abs() > LARGE * pull.largest_force())
+}
+
+/// The strip was never seen at rest: its free length is known from elsewhere, or only as well as the first readings tell.
+fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
+    let (reading, start) = (pull.readings.first()?, toe::first_rows(loading, pull.noise)?);
+    let unsure = length_error(&start, start.rises_through(0.0)?)?;
+    // dσ/σ = −dL F′/F
+    let share = unsure * start.slope(reading.separation) / start.at(reading.separation);
+    (share > UNSURE && !pull.has_shapes).then(|| {
+        let out = 1e3 * (reading.separation - pull.gauge);
+        let found = format!(
+            "{} N in the first reading, {out:.2} mm beyond the free length, {:.2} mm",
+            digits(reading.force, 3),
+            1e3 * pull.gauge
+        );
+        let expected = format!(
+            "readings from rest on: of these the first tell the free length to ± {:.2} mm only, which makes the stress there ± \
+             {:.0} % unsure beside its band, if it is not known otherwise",
+            1e3 * unsure,
+            100.0 * share
+        );
+        pull.notice(Severity::Doubt, reading, found, expected)
+    })
+}
+
+/// How sure a place is where readings are followed down to zero: half of its 95 % band, m.
+fn length_error(start: &Polynomial, length: f64) -> Option<f64> {
+    Some(1.96 * start.error(length)? / start.slope(length))
 }
 
 /// The strip was seen slack.
@@ -77,20 +108,22 @@ fn unseen(pull: &Pull, loading: &[[f64; 2]], near: f64) -> Option<Notice> {
     let before = loading[..at_gauge].first().map(|row| row[1]);
     let after = || toe::find(&pull.last_unloading(), pull.threshold(), near).map(|toe| toe.level);
     let found = format!("{} N at the gauge length, {:.2} mm", digits(force, 3), 1e3 * pull.gauge);
+    let length = length.map(|length| (length, length_error(&start, length)));
     let expected = format!("none: {}", cause(pull, force, length, before.or_else(after)));
     Some(pull.notice(Severity::Doubt, reading, found, expected))
 }
 
 /// Why there is force at the gauge length.
 ///
-/// * `length` — the free length if it is a tension, m
+/// * `length` — the free length if it is a tension, and half of its band, m
 /// * `slack` — what the load cell read while the strip was slack, if it was seen so, N
-fn cause(pull: &Pull, force: f64, length: Option<f64>, slack: Option<f64>) -> String {
+fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Option<f64>) -> String {
     let zero = format!("the load cell's zero is off, {}", taking_off(force));
-    let tension = match length.filter(|length| *length < pull.gauge) {
-        Some(length) => format!(
-            "the strip was put in under tension, {}, where a parabola through the first readings comes to zero",
-            free_length(length)
+    let tension = match length.filter(|(length, _)| *length < pull.gauge) {
+        Some((length, unsure)) => format!(
+            "the strip was put in under tension, {}, where a parabola through the first readings comes to zero{}",
+            free_length(length),
+            unsure.map_or(String::new(), |unsure| format!(", ± {:.2} mm", 1e3 * unsure))
         ),
         None => "the strip was put in under tension, and its free length cannot be told from this".into(),
     };
@@ -106,9 +139,9 @@ fn cause(pull: &Pull, force: f64, length: Option<f64>, slack: Option<f64>) -> St
 
 fn taking_off(force: f64) -> String {
     let force = digits(force, 3);
-    format!("{force} N are to be taken off every force (import strip --zero {force})")
+    format!("{force} N are to be taken off every force (import strip --replace --zero {force})")
 }
 
 fn free_length(length: f64) -> String {
-    format!("its free length is {:.2} mm (import strip --free-length-m {length:.5})", 1e3 * length)
+    format!("its free length is {:.2} mm (import strip --replace --free-length-m {length:.5})", 1e3 * length)
 }

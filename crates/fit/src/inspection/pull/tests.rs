@@ -170,13 +170,32 @@ fn a_tension_at_the_gauge_length_is_noticed_with_the_free_length() {
     // 2 N at 200 mm: 2000 ε + 20000 ε² = 40 N/m at ε = 0.0170820.
     let length = GAUGE / 1.0170820;
     let rows = loading(|s| law(s, length));
+    let mut inside = 0;
     for seed in 0..SEEDS {
         let (frame, words) = doubt(&noisy(&rows, seed));
         assert_eq!(frame, "1");
         assert!(words.starts_with("2.00 N at the gauge length, 200.00 mm"), "{words}");
         assert!((number(&words, "--free-length-m ") - length).abs() < 1e-4, "{words}");
         assert!(words.contains("--zero 2.0") || words.contains("--zero 1.99"), "{words}");
+        let off = 1e3 * (number(&words, "--free-length-m ") - length).abs();
+        inside += u64::from(off <= number(&words, "comes to zero, ± "));
     }
+    assert!((SEEDS - 3..=SEEDS).contains(&inside), "{inside} of {SEEDS} within what is told");
+}
+
+#[test]
+fn a_strip_that_was_never_at_rest_says_how_unsure_its_free_length_is() {
+    let rows = |steps| -> Vec<[f64; 2]> {
+        course(1.04 * GAUGE, 1.05 * GAUGE, steps).into_iter().map(|s| [s, law(s, GAUGE)]).collect()
+    };
+    let (frame, words) = doubt(&noisy(&rows(10), 1));
+    assert_eq!(frame, "1");
+    assert!(words.contains("8.00 mm beyond the free length, 200.00 mm"), "{words}");
+    assert!((0.4..10.0).contains(&number(&words, "free length to ± ")), "{words}");
+    // Ten times as far, and many of them.
+    let rows: Vec<[f64; 2]> =
+        course(1.04 * GAUGE, 1.14 * GAUGE, 100).into_iter().map(|s| [s, law(s, GAUGE)]).collect();
+    assert_eq!(noticed(&noisy(&rows, 1)), []);
 }
 
 #[test]
