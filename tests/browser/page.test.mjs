@@ -213,7 +213,11 @@ for (const width of [1280, 390]) {
       for (let left = await waiting.count(); left > 0; left--) await waiting.first().click();
       await page.locator("#components button", { hasText: "shear" }).click();
       const labels = await page.locator("#curve .u-series:not(.quiet) .u-label").allTextContents();
-      assert.equal(labels.length, 1 + 12);
+      // A curve that is not observed has no line: springs may fail to see shear.
+      const ranked = JSON.parse(readFileSync(join(out, "compared", "compare.json"), "utf8")).rows;
+      const seen = ranked.filter((row) => !(row.missing ?? []).includes("shear")).length;
+      assert.ok(seen >= 11, `${seen} of 12 see shear`);
+      assert.equal(labels.length, 1 + seen);
       await page.locator("#sequence").selectOption("complex-shear");
       assert.ok((await pixels(page, "#answer canvas")).drawn > 1000);
       // Two cycles, each there and back, of 12 models and variants and of the measurement; the first of each is named.
