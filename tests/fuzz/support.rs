@@ -68,9 +68,12 @@ impl Sample {
         let back = self.path("back");
         write_sequence(&back, &read).expect("what was read can be written");
         let mut rounded = read;
-        // Shapes are written as float32.
+        // Shapes are written as float32, where they are not so far out that this would be too coarse.
         let shapes = rounded.frames.iter_mut().filter_map(|frame| frame.positions.as_mut());
-        shapes.flatten().for_each(|position| *position = position.map(|value| f64::from(value as f32)));
+        let shapes: Vec<_> = shapes.flatten().collect();
+        if !shapes.iter().any(|position| position.amax() > 1000.0) {
+            shapes.into_iter().for_each(|position| *position = position.map(|value| f64::from(value as f32)));
+        }
         let again = read_sequence(&back.join(&rounded.name)).expect("what was written can be read");
         same(&rounded, &again);
     }

@@ -17,7 +17,9 @@ pub(crate) mod pull;
 mod sag;
 mod shapes;
 mod size;
+mod tare;
 mod weight;
+mod yarns;
 
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
@@ -85,12 +87,15 @@ impl Inspection {
     }
 }
 
+/// A standard deviation of a force component where none is told, N.
+const NOISE_N: f64 = 0.01;
+
 /// Looks for contradictions in one sequence, adds a notice for each, and marks points as unobserved (NaN) that were not
 /// seen where the file has them.
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 11] = [
+const CHECKS: [Check; 13] = [
     noise::check,
     shapes::check_presence,
     size::check,
@@ -99,8 +104,10 @@ const CHECKS: [Check; 11] = [
     poses::check,
     weight::check,
     sag::check,
+    yarns::check,
     edge::check,
     sag::check_frames,
+    tare::check,
     pull::check,
 ];
 
@@ -120,7 +127,7 @@ pub fn inspect(set: &MeasurementSet) -> Inspection {
         }
         inspection.notices.extend(notices);
     }
-    weight::doubt_bending(&inspection.set, &mut inspection.notices);
+    weight::doubt_others(&inspection.set, &mut inspection.notices);
     inspection
 }
 

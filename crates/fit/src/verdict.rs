@@ -9,7 +9,6 @@
 //!
 //! Two laboratories differ by 15–25 % on one fabric (Cao et al. 2008), so a tenth is good and a third is little.
 
-use crate::frame::Kind;
 use crate::incremental::FitReport;
 use crate::inspection::{Notice, Severity};
 use crate::report::{Sample, SequenceReport, StageReport};
@@ -61,6 +60,8 @@ impl Verdict {
 /// Widest band and largest residual, as shares, up to which a grade is given.
 const BAND: [f64; 2] = [0.1, 0.3];
 const RESIDUAL: [f64; 2] = [0.05, 0.15];
+/// One frame, or two, agree with almost any curve.
+const FEWEST: usize = 3;
 /// Frames without an equilibrium beyond this share are no accident.
 const DROPPED: f64 = 0.25;
 
@@ -100,6 +101,12 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     if stage.scatter.noise_is_overstated() {
         let found = "less is left than the noise that was declared: is it too large?";
         reasons.push((Grade::Amber, found.into()));
+    }
+    if used > 0 && used < FEWEST {
+        reasons.push((
+            Grade::Amber,
+            format!("{used} of {FEWEST} frames that it takes to contradict each other"),
+        ));
     }
     if !stage.converged {
         reasons.push((Grade::Amber, "the fit did not come to its minimum".into()));
@@ -185,8 +192,7 @@ fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
         return Some((Grade::Amber, said));
     }
     let stretches = names(&Component::is_stretch);
-    let is_bias = stage.sequences.iter().any(|sequence| sequence.kind == Kind::StretchBias);
-    (is_bias && !stretches.is_empty()).then(|| {
+    (!stretches.is_empty()).then(|| {
         let said = format!(
             "yarns that hardly give are assumed ({stretches}): where they do, shear comes out too soft, and tests of stretch \
              would tell"

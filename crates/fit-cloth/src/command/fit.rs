@@ -13,7 +13,7 @@ use cloth_fit::check::{check_material, refuse_unstable};
 use cloth_fit::error::Error;
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::incremental::{self, Failure as Failed, Finished, FitReport, Memory};
-use cloth_fit::inspection::inspect;
+use cloth_fit::inspection::{Notice, Severity, inspect};
 use cloth_fit::knowledge::Knowledge;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::result::write_result;
@@ -174,12 +174,29 @@ fn fit_model(
     let progress = Progress::new(&model.to_string(), !telling.quiet);
     let report = incremental::resume(set, goal.stages(), &known, &settings, memory, &mut progress.watch());
     progress.finish();
-    let report = report?;
+    let mut report = report?;
+    if let Some(file) = given.filter(|file| file.fabric.name != set.fabric.name) {
+        doubt_known(&mut report, &file.fabric.name, &set.fabric.name);
+    }
     if report.stages.is_empty() {
         return Err(nothing(&flags.on.set, set, &goal.kinds(&known)).into());
     }
     let material = MaterialFile::new(set, &settings, &report, given);
     Ok(Fitted { report, material })
+}
+
+/// Doubts what was fitted with curves that are another fabric's.
+fn doubt_known(report: &mut FitReport, known: &str, fabric: &str) {
+    let names: BTreeSet<&String> = report.sequences().iter().map(|(_, sequence)| &sequence.name).collect();
+    let notice = |name: &String| Notice {
+        severity: Severity::Doubt,
+        sequence: name.clone(),
+        place: "--known".into(),
+        found: format!("curves of {known}, taken as exact"),
+        expected: format!("curves of {fabric}, which was measured"),
+    };
+    let notices: Vec<Notice> = names.into_iter().map(notice).collect();
+    report.notices.extend(notices);
 }
 
 /// True if a set has a sequence of one of some kinds.

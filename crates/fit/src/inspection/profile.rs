@@ -80,15 +80,21 @@ pub(super) fn profiles(sequence: &Sequence, table: &Table, up: &Vector3<f64>) ->
 /// How far every vertex is, at rest, from the side of the sheet that is farthest back in all frames together, m.
 fn reach(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vec<f64>> {
     let rest = &sequence.mesh.positions;
+    let along = outward_at_rest(sequence, outward)?;
+    let back = rest.iter().map(|rest| rest.dot(&along)).fold(f64::MAX, f64::min);
+    Some(rest.iter().map(|rest| rest.dot(&along) - back).collect())
+}
+
+/// The direction of the rest mesh that is farther out the farther along, in all frames together; unit length.
+pub(super) fn outward_at_rest(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let rest = &sequence.mesh.positions;
     let mut along = Vector3::zeros();
     for (_, positions) in shapes(sequence) {
         let seen = || rest.iter().zip(positions).filter(|(_, place)| is_seen(place));
         let middle = mean(seen().map(|(rest, _)| *rest));
         along += seen().map(|(rest, place)| (rest - middle) * place.dot(outward)).sum::<Vector3<f64>>();
     }
-    let along = along.try_normalize(0.0)?;
-    let back = rest.iter().map(|rest| rest.dot(&along)).fold(f64::MAX, f64::min);
-    Some(rest.iter().map(|rest| rest.dot(&along) - back).collect())
+    along.try_normalize(0.0)
 }
 
 /// The shapes that were measured, with the indices of their frames.

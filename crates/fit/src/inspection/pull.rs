@@ -14,6 +14,7 @@ mod magnitude;
 mod polynomial;
 mod rest;
 mod spike;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod toe;
@@ -92,6 +93,7 @@ pub(crate) fn inspect(
         pull.readings.truncate(breakage.last + 1);
         sequence.frames.truncate(numbers.iter().take_while(|&&number| number <= last).count());
     }
+    notices.extend(steps::check(&pull));
     notices.extend(rest::check(&pull));
     notices.extend(areal_density.and_then(|density| magnitude::check(&pull, density)));
     notices

@@ -97,6 +97,52 @@ fn poses_of_another_scale_than_shapes_are_doubted_by_how_much() {
 }
 
 #[test]
+fn sheets_that_hang_along_other_yarns_than_their_kind_says_are_refused() {
+    for (name, kind, angle) in [
+        ("bend-weft", Kind::BendWarp, "0° to weft"),
+        ("bend-warp", Kind::BendWeft, "90° to weft"),
+        ("bend-bias", Kind::BendWarp, "45° to weft"),
+        ("bend-warp", Kind::BendBias, "90° to weft"),
+    ] {
+        refused(&noticed(name, |_, sequence| sequence.kind = kind), &["test.toml kind", angle]);
+    }
+    let turned = noticed("bend-weft", |_, sequence| {
+        sequence.mesh.material.iter_mut().for_each(|m| *m = nalgebra::Vector2::new(-m.y, m.x));
+    });
+    refused(&turned, &["test.toml kind", "90° to weft", "along weft"]);
+}
+
+#[test]
+fn a_picture_frame_that_pulls_before_it_is_sheared_is_doubted() {
+    let notices = noticed("shear", |_, sequence| {
+        let cords = sequence.frames.iter_mut().flat_map(|frame| &mut frame.cords);
+        cords.filter(|cord| cord.clip == 1).for_each(|cord| cord.force.y += 1.5);
+    });
+    doubted(&notices, &["forces.csv frame 0", "on clip right before the frame is sheared"]);
+}
+
+#[test]
+fn one_load_cell_that_reads_wrong_in_every_test_is_doubted_where_nothing_weighs() {
+    for factor in [1.3, 1.0 / 9.80665, 100.0] {
+        let mut set = fixture("cotton-denim");
+        let frames = set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames);
+        frames.flat_map(|frame| &mut frame.cords).for_each(|cord| cord.force *= factor);
+        let notices = inspect(&set).notices;
+        let of = |name: &str| notices.iter().find(|notice| notice.sequence == name);
+        for name in ["stretch-weft", "stretch-warp", "shear"] {
+            let notice = of(name).unwrap_or_else(|| panic!("{factor}: {name}"));
+            assert!(notice.to_string().contains("calibration of forces.csv"), "{notice}");
+        }
+        assert!(of("bend-weft").is_none(), "{factor}: {:?}", of("bend-weft"));
+    }
+    // Clips without mass in one test are no fault of the others.
+    let mut set = fixture("cotton-denim");
+    let shear = set.sequences.iter_mut().filter(|sequence| sequence.name == "shear");
+    shear.flat_map(|sequence| &mut sequence.clips).for_each(|clip| clip.mass_kg = 0.0);
+    assert!(inspect(&set).notices.iter().all(|notice| notice.sequence == "shear"));
+}
+
+#[test]
 fn heights_that_were_not_measured_are_told() {
     let notices = noticed("shear", |_, sequence| {
         sequence.noise = None;

@@ -1,14 +1,15 @@
 //! The weight of cloth and clips against what the cords bear.
 
-use super::{Notice, Severity, area, median};
-use crate::frame::{Fabric, MeasurementSet, Sequence};
+use super::{NOISE_N, Notice, Severity, area, median};
+use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
 use nalgebra::Vector3;
 
-/// Of the weight: cords have friction, and clips are weighed with their screws or without.
-const SHARE: f64 = 0.3;
+/// Of the weight: cords have friction, and scales are read to less.
+const SHARE: f64 = 0.1;
 
-/// A standard deviation of a force component where none is told, N.
-const NOISE: f64 = 0.01;
+/// Two ratios, or two densities, are one within these factors: of a density only what clips leave over is known.
+const ONE_RATIO: f64 = 1.15;
+const ONE_DENSITY: f64 = 1.5;
 
 /// Of the forces: what cells are sure of, and what a tilt of their axes by a third of a degree makes.
 const FORCE_SHARE: f64 = 5e-3;
@@ -27,36 +28,56 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
                 1e3 * weight.clips,
                 weight.expected()
             ),
-            expected: "the same: areal_density_kg_m2 of fabric.toml, mass_kg of the clips or gravity_m_s2 in test.toml, or forces \
-                       that were set to zero under load"
+            expected: "the same: the unit or calibration of forces.csv, areal_density_kg_m2 of fabric.toml, mass_kg of the clips or \
+                       gravity_m_s2 in test.toml, or forces that were set to zero under load"
                 .into(),
         });
     }
 }
 
-/// Doubts the bending tests of a set in which the cords of another test bear another weight than the areal density gives:
-/// rigidity is proportional to it.
-pub(super) fn doubt_bending(set: &MeasurementSet, notices: &mut Vec<Notice>) {
-    let weights =
-        set.sequences.iter().filter_map(|sequence| Some((sequence, Weight::of(&set.fabric, sequence)?)));
-    let Some((sequence, density)) =
-        weights.filter(|(_, weight)| weight.disagrees()).find_map(|(sequence, weight)| {
-            Some((sequence, set.fabric.areal_density_kg_m2 * weight.cloth_share()?))
-        })
-    else {
-        return;
+/// Doubts tests that weigh nothing themselves by what the cords of others of the set bear: stretch where they all bear one
+/// and the same multiple of the weight, as of another unit; bending where they all tell one other areal density, to which
+/// rigidity is proportional; both where one test alone cannot tell which.
+pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
+    let weights = set.sequences.iter().map(|sequence| Some((sequence, Weight::of(&set.fabric, sequence)?)));
+    let weighed: Vec<(&Sequence, Weight)> = weights.flatten().collect();
+    let off: Vec<&(&Sequence, Weight)> = weighed.iter().filter(|(_, weight)| weight.disagrees()).collect();
+    // Those that agree speak for the rest of the set.
+    let Some((first, weight)) = off.first().filter(|_| off.len() == weighed.len()) else { return };
+    let is_one = |values: Vec<f64>, factor: f64| {
+        let [low, high] = values.iter().fold([f64::MAX, f64::MIN], |[l, h], v| [l.min(*v), h.max(*v)]);
+        low > 0.0 && high < factor * low
     };
-    for bending in set.sequences.iter().filter(|bending| bending.table.is_some()) {
+    let ratio = is_one(off.iter().map(|(_, weight)| weight.borne / weight.expected()).collect(), ONE_RATIO);
+    let shares: Option<Vec<f64>> = off.iter().map(|(_, weight)| weight.cloth_share()).collect();
+    let density = shares.is_some_and(|shares| is_one(shares, ONE_DENSITY));
+    let mut doubt = |sequence: &Sequence, place: &str, found: String, expected: &str| {
         notices.push(Notice {
             severity: Severity::Doubt,
-            sequence: bending.name.clone(),
-            place: "fabric.toml areal_density_kg_m2".into(),
-            found: format!(
-                "{} kg/m², where the cords of {} bear what {density:.3} kg/m² would weigh",
-                set.fabric.areal_density_kg_m2, sequence.name
-            ),
-            expected: "the same, if mass_kg of the clips is right: rigidity is proportional to it".into(),
+            sequence: sequence.name.clone(),
+            place: place.into(),
+            found,
+            expected: expected.into(),
         });
+    };
+    for other in &set.sequences {
+        let stretched = matches!(other.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+        if stretched && ratio && Weight::of(&set.fabric, other).is_none() {
+            let times = weight.borne / weight.expected();
+            let found = format!("a load cell that in {} reads {times:.3} times the weight", first.name);
+            let expected = "1, if it is the same cell: the unit or the calibration of forces.csv";
+            doubt(other, "forces.csv", found, expected);
+        }
+        if let Some(share) = weight.cloth_share().filter(|_| other.table.is_some() && density) {
+            let told = set.fabric.areal_density_kg_m2;
+            let found = format!(
+                "{told} kg/m², where the cords of {} bear what {:.3} kg/m² would weigh",
+                first.name,
+                share * told
+            );
+            let expected = "the same, if mass_kg of the clips is right: rigidity is proportional to it";
+            doubt(other, "fabric.toml areal_density_kg_m2", found, expected);
+        }
     }
 }
 
@@ -95,7 +116,7 @@ impl Weight {
         if along.iter().all(|force| *force == 0.0) {
             return None;
         }
-        let noise = sequence.noise.and_then(|noise| noise.force_n).unwrap_or(NOISE);
+        let noise = sequence.noise.and_then(|noise| noise.force_n).unwrap_or(NOISE_N);
         let error = noise * (sequence.clips.len() as f64 / along.len() as f64).sqrt();
         Some(Self {
             borne: median(along),

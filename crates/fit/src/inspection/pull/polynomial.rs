@@ -42,6 +42,11 @@ impl Polynomial {
         terms.fold(0.0, |sum, (power, coefficient)| sum * t + power as f64 * coefficient) / self.scale
     }
 
+    /// How far it is from its first point to its last.
+    pub(super) fn span(&self) -> f64 {
+        self.scale
+    }
+
     /// Standard deviation of the polynomial there.
     pub(super) fn error(&self, x: f64) -> Option<f64> {
         let t = (x - self.origin) / self.scale;

@@ -10,6 +10,10 @@ const NEAR: f64 = 0.01;
 const FAR: f64 = 0.5;
 /// Of the stress at the first reading: a free length that is unsure by more makes a band useless.
 const UNSURE: f64 = 0.05;
+/// Of the force of the first reading: less may be the curve's own bend.
+const SHARE: f64 = 0.3;
+/// Of the span of the first readings, or of the slack: from so near they are followed down to rest.
+const CLOSE: f64 = 0.25;
 /// Of the largest force: an error that matters however little it shifts the free length.
 const LARGE: f64 = 0.01;
 
@@ -34,9 +38,30 @@ fn matters(pull: &Pull, force: f64, shift: Option<f64>) -> bool {
     force.abs() > pull.threshold() && (shifts || force.abs() > LARGE * pull.largest_force())
 }
 
-/// The strip was never seen at rest: its free length is known from elsewhere, or only as well as the first readings tell.
+/// The strip was never seen at rest: its first readings tell whether it was free there, and how surely.
 fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
     let (reading, start) = (pull.readings.first()?, toe::first_rows(loading, pull.noise)?);
+    let force = start.at(pull.gauge);
+    let length = start.rises_through(0.0);
+    let slack = length.map(|length| length - pull.gauge).filter(|slack| *slack > 0.0);
+    let close = match slack {
+        // A curve that bends up from rest on looks like slack from afar.
+        Some(slack) => reading.separation - pull.gauge < (1.0 + CLOSE) * slack,
+        None => reading.separation - pull.gauge < CLOSE * start.span(),
+    };
+    let sure = force.abs() > SHARE * reading.force.abs() + 4.0 * start.error(pull.gauge)?;
+    if close && sure && matters(pull, force, length.map(|length| pull.gauge - length)) {
+        let found = format!(
+            "first readings that come to {} N at the gauge length, {:.2} mm",
+            digits(force, 3),
+            1e3 * pull.gauge
+        );
+        let expected = match length.filter(|length| *length > pull.gauge) {
+            Some(length) => format!("none: the strip was slack, {}; or the zero is off", free_length(length)),
+            None => format!("none: {}", cause(pull, force, length.map(|length| (length, None)), None)),
+        };
+        return Some(pull.notice(Severity::Doubt, reading, found, expected));
+    }
     let unsure = length_error(&start, start.rises_through(0.0)?)?;
     // dσ/σ = −dL F′/F
     let share = unsure * start.slope(reading.separation) / start.at(reading.separation);
@@ -119,7 +144,8 @@ fn unseen(pull: &Pull, loading: &[[f64; 2]], near: f64) -> Option<Notice> {
 /// * `slack` — what the load cell read while the strip was slack, if it was seen so, N
 fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Option<f64>) -> String {
     let zero = format!("the load cell's zero is off, {}", taking_off(force));
-    let tension = match length.filter(|(length, _)| *length < pull.gauge) {
+    // What is followed down to nowhere is no length.
+    let tension = match length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length)) {
         Some((length, unsure)) => format!(
             "the strip was put in under tension, {}, where a parabola through the first readings comes to zero{}",
             free_length(length),
