@@ -1,11 +1,11 @@
 //! Forces on a sheet in a picture frame that is not sheared yet.
 
 use super::{NOISE_N, Notice, Severity};
-use crate::frame::{Fabric, Kind, Sequence};
-use crate::measure::mean;
+use crate::frame::{Clip, Fabric, Kind, Sequence};
+use crate::measure::{clip_centres, mean};
 use nalgebra::Vector3;
 
-/// Clips that moved by less than this share of how far they ever do are where they began.
+/// Clips whose distances differ from those at rest by less than this share of what they ever do are at rest.
 const REST: f64 = 1e-3;
 /// Of the largest force: cords have friction, and frames are put on with a little tension.
 const SHARE: f64 = 0.1;
@@ -21,11 +21,17 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
     let up = sequence.gravity.try_normalize(0.0).unwrap_or_default();
     // What bears the weight is no tension.
     let in_plane = |force: Vector3<f64>| force - up * force.dot(&up);
+    // Distances between clips do not care where the set was carried.
+    let apart = |centres: &[Vector3<f64>]| -> Vec<f64> {
+        let pairs =
+            centres.iter().enumerate().flat_map(|(i, a)| centres[..i].iter().map(move |b| (a - b).norm()));
+        pairs.collect()
+    };
+    let held = |clip: &Clip| mean(clip.vertices.iter().map(|&vertex| sequence.mesh.positions[vertex]));
+    let rest = apart(&sequence.clips.iter().map(held).collect::<Vec<_>>());
     let moved = |frame: usize| {
-        let [first, now] = [0, frame].map(|frame| sequence.frames[frame].poses.iter());
-        let by =
-            first.zip(now).map(|(first, now)| (now.translation.vector - first.translation.vector).norm());
-        by.fold(0.0, f64::max)
+        let now = apart(&clip_centres(sequence, &sequence.frames[frame]));
+        now.iter().zip(&rest).map(|(now, rest)| (now - rest).abs()).fold(0.0, f64::max)
     };
     let frames = 0..sequence.frames.len();
     let clips = 0..sequence.clips.len();
