@@ -63,7 +63,7 @@ impl Scatter {
             Some(noise) => noise * noise,
             None => successive_variance(residual, tracks, &informative).unwrap_or(mean_square),
         };
-        // The least share of what is left that is noise, if chance alone is at work.
+        // s²/σ² that chance alone exceeds in one of a hundred fits.
         let chance = match known {
             Some(_) => chi_square(freedom.max(1) as f64, Z_99) / freedom.max(1) as f64,
             None => {

@@ -174,7 +174,7 @@ fn far_off(sequence: &SequenceReport) -> Option<(Grade, String)> {
     (grade > Grade::Green).then_some((grade, said))
 }
 
-/// What shear was fitted with that nobody measured: bending of a sheet that may buckle, yarns of a strip cut on the bias.
+/// Curves that nobody measured and that shear depends on: bending of a sheet that may buckle, else stretch of its yarns.
 fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
     let names = |is_meant: &dyn Fn(Component) -> bool| {
         let meant = stage.basis.assumed.iter().filter(|&&component| is_meant(component));
