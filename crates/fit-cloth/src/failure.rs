@@ -60,6 +60,9 @@ pub(crate) fn with_option(error: Error, option: &str) -> Error {
         Error::Input { path, line, field, found, expected } => {
             Error::Input { path, line, field, found, expected: format!("{expected} ({option})") }
         }
+        Error::Setting { field, found, expected } => {
+            Error::Setting { field, found, expected: format!("{expected} ({option})") }
+        }
         other => other,
     }
 }

@@ -140,6 +140,16 @@ fn what_is_given_is_not_fitted() {
         assert_eq!(output.status.code(), Some(3), "{errors}");
         assert!(errors.contains(words), "{errors}");
     }
+    // Of another fabric they may be nothing like.
+    let other = fs::read_to_string(path.join(known)).unwrap();
+    let name = format!("\"name\": \"{}\"", material.fabric.name);
+    assert!(other.contains(&name));
+    fs::write(path.join("other.json"), other.replace(&name, "\"name\": \"canvas\"")).unwrap();
+    let [text, _] = said(&fit("shear", &path, "fourth", &["--known", "other.json"]));
+    assert!(
+        text.contains("--known: found curves of canvas, taken as exact") && text.contains("Verdict: AMBER"),
+        "{text}"
+    );
     let output = fit("fit", &path, "third", &["--known", "second/residuals.csv"]);
     assert_eq!(output.status.code(), Some(3));
 }

@@ -200,7 +200,7 @@ fn bad_input_ends_in_3_and_writes_nothing() {
         "",
         "",
         &["--force-noise-n", "-1"],
-        "force_noise: found -1, expected a standard deviation above 0, in N",
+        "force_noise: found -1, expected a standard deviation above 0, in N (--force-noise-n)",
     );
     check(
         "",
@@ -216,7 +216,7 @@ fn a_negative_gauge_is_bad_input_and_not_an_unknown_option() {
     let options = OPTIONS.map(|option| if option == "0.08" { "-0.08" } else { option });
     let output =
         command(folder.path(), &[&["import", "strip", "weft.csv"], &options[..]].concat()).output().unwrap();
-    let expected = "error: gauge: found -0.08, expected a length above 0 and at most 10 m\n";
+    let expected = "error: gauge: found -0.08, expected a length above 0 and at most 10 m (--gauge-m)\n";
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(3), expected));
 }
 

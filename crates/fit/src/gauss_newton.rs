@@ -17,6 +17,7 @@ mod region;
 pub use outcome::{Iteration, Outcome, Status};
 
 use crate::least_squares::{LeastSquares, Status as StepStatus};
+use crate::robust::Robust;
 use nalgebra::{DMatrix, DVector};
 use region::{Bend, Scale, State, Step};
 
@@ -34,6 +35,11 @@ pub trait Residuals {
     /// # Errors
     /// Ends the fit and is handed through.
     fn evaluate(&mut self, point: &DVector<f64>, jacobian: bool) -> Result<Evaluation, Self::Error>;
+
+    /// How residuals and their Jacobian have been bent, the same at all points of a fit: its curvature enters the steps.
+    fn robust(&self) -> Option<Robust> {
+        None
+    }
 }
 
 /// What became of an evaluation.
@@ -149,7 +155,7 @@ pub fn minimise<P: Residuals>(
     };
     let projected = inside != *start;
     let state = match values(problem.evaluate(&inside, true)?) {
-        Ok((residual, Some(jacobian))) => State::new(inside, residual, jacobian),
+        Ok((residual, Some(jacobian))) => State::new(inside, residual, jacobian, problem.robust()),
         Ok((_, None)) => panic!("the Jacobian was asked for"),
         Err(reason) => return Ok(Outcome::unevaluated(inside, Status::StartFailed { reason })),
     };
@@ -231,7 +237,8 @@ fn within_region<P: Residuals>(
                     Ok(next) => next,
                     Err(reason) => break Status::Stalled { reason: Some(reason) },
                 };
-                bend = Some(Bend::between(&state, &next));
+                // The bend of residuals is in the step already.
+                bend = problem.robust().is_none().then(|| Bend::between(&state, &next));
                 state = next;
                 scale.widen(&state.jacobian);
                 (rejected, failure) = (0, None);
@@ -264,7 +271,8 @@ fn accepted_state<P: Residuals>(
         None => values(problem.evaluate(&point, true)?)
             .map(|(_, jacobian)| jacobian.unwrap_or_else(|| panic!("the Jacobian was asked for"))),
     };
-    Ok(jacobian.map(|jacobian| State::new(point, residual, jacobian)))
+    let robust = problem.robust();
+    Ok(jacobian.map(|jacobian| State::new(point, residual, jacobian, robust)))
 }
 
 /// The start itself, or the nearest point that meets the inequalities.

@@ -10,6 +10,7 @@
 
 mod edge;
 mod failed_points;
+mod grip;
 mod noise;
 mod poses;
 mod profile;
@@ -95,13 +96,14 @@ const NOISE_N: f64 = 0.01;
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
 /// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
-const CHECKS: [Check; 13] = [
+const CHECKS: [Check; 14] = [
     noise::check,
     shapes::check_presence,
     size::check,
     failed_points::check,
     shapes::check_heights,
     poses::check,
+    grip::check,
     weight::check,
     sag::check,
     yarns::check,

@@ -200,8 +200,8 @@ impl Replica {
         if replica.frames.is_empty() {
             return Err(bad_geometry(
                 sequence,
-                "no frame in which anything is deformed and measured".into(),
-                "clips that are apart and their forces (clips.csv, forces.csv), or shapes with an overhang (positions.npy)",
+                "no frame in which the specimen is deformed and measured".into(),
+                "clips that move apart, with their forces (clips.csv, forces.csv), or shapes with an overhang (positions.npy)",
             ));
         }
         replica.frames_at_rest = sequence.frames.len() - replica.frames.len();

@@ -3,9 +3,10 @@
 //! ```text
 //! ρ(r) = 2c² (√(1 + (r/c)²) − 1)      pseudo-Huber: r² where small, 2c|r| where large
 //! r̃ = sign(r) √ρ(r)                   so that Σ r̃² is the robust sum, and a least-squares method minimises it
+//! ρ″/2 = (1 + (r/c)²)^(−3/2)          of which Gauss–Newton on r̃ has (dr̃/dr)²: far more where r is large, so that it creeps
 //! ```
 //!
-//! Source: Hartley and Zisserman, Multiple View Geometry (2004), A6.8.
+//! Source: Hartley and Zisserman, Multiple View Geometry (2004), A6.8; Triggs et al., Bundle adjustment (2000), 4.3.
 
 /// Residuals up to about this size count in full.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +23,14 @@ impl Robust {
         // √(2(root − 1)) c = |r| √(2/(root + 1)), without cancellation.
         let share = (2.0 / (root + 1.0)).sqrt();
         (residual * share, 1.0 / (root * share))
+    }
+
+    /// √(ρ″/2) over dr̃/dr, of a residual that was bent to r̃: a row of the Jacobian times this, and its residual over this,
+    /// have the slope of Σ r̃² and its whole curvature in r.
+    pub fn curvature(&self, bent: f64) -> f64 {
+        // ρ = r̃² gives √(1 + (r/c)²) without r.
+        let root = 1.0 + 0.5 * (bent / self.limit).powi(2);
+        (2.0 / (root * (root + 1.0))).sqrt()
     }
 
     /// Mean of ρ over noise of standard deviation 1, by the trapezoidal rule: what is left of its mean square.
@@ -61,6 +70,18 @@ mod tests {
             let h = 1e-6;
             let slope = (robust.bend(residual + h).0 - robust.bend(residual - h).0) / (2.0 * h);
             assert!((slope - robust.bend(residual).1).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_curvature_is_half_the_second_derivative() {
+        let robust = Robust { limit: 2.0 };
+        for residual in [-7.0, -1.0, 0.3, 2.0, 40.0] {
+            let h = 1e-3;
+            let rho = |r: f64| robust.bend(r).0.powi(2);
+            let second = (rho(residual + h) - 2.0 * rho(residual) + rho(residual - h)) / (h * h);
+            let (bent, slope) = robust.bend(residual);
+            assert!((0.5 * second - (robust.curvature(bent) * slope).powi(2)).abs() < 1e-7);
         }
     }
 }

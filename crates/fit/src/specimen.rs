@@ -123,16 +123,16 @@ pub(crate) fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usi
 }
 
 /// The rest rectangle.
-struct Rectangle {
+pub(crate) struct Rectangle {
     frame: Isometry3<f64>,
     /// Extent along x and y of the specimen's frame, m.
     size: [f64; 2],
     /// Rest positions in the specimen's frame.
-    flat: Vec<Vector2<f64>>,
+    pub(crate) flat: Vec<Vector2<f64>>,
 }
 
 impl Rectangle {
-    fn of(sequence: &Sequence) -> Result<Self> {
+    pub(crate) fn of(sequence: &Sequence) -> Result<Self> {
         let mesh = &sequence.mesh;
         let bad = |found: String, expected: &str| Error::Geometry {
             sequence: sequence.name.clone(),

@@ -43,6 +43,8 @@ use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
+/// A zero of a load cell is at most this multiple of the largest force that it read.
+const MOST_ZERO: f64 = 1.1;
 /// The column of branches that is looked for if none is named.
 const BRANCH: &str = "branch";
 /// The clamps of a tensile test are this many gauge lengths apart; other values are another unit or quantity.
@@ -120,6 +122,20 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
     let phases = phases(readings.iter().map(|reading| (reading.branch, reading.separation)));
     let (taken, repeats) = without_repeats(taken(&table, test, &readings)?);
     let length = free_length(&table, test, &readings)?;
+    if !taken.iter().any(|reading| reading.separation > length) {
+        let found = format!("no clamps farther apart than the free length, {length} m");
+        let expected =
+            "an extension that grows where the strip is pulled: the other sign, or another free length";
+        return Err(table.incomplete(&test.extension.column().name, found, expected));
+    }
+    let largest = taken.iter().map(|reading| (reading.force + test.zero).abs()).fold(0.0, f64::max);
+    if test.zero.abs() > MOST_ZERO * largest {
+        return Err(Error::Setting {
+            field: "zero",
+            found: test.zero.to_string(),
+            expected: format!("a reading with nothing in the clamps: at most the largest force, {largest} N"),
+        });
+    }
     let (mesh, pull) =
         test.specimen(length).map_err(|source| Error::Mechanics { context: test.name.clone(), source })?;
     let frame = |branch: usize, phase, shift: f64, cords| Frame {

@@ -155,8 +155,11 @@ fn unsure(stage: &StageReport) -> Option<(Grade, String)> {
         return Some((Grade::Red, "how sure it is, is not known over all of its range".into()));
     };
     let grade = grade(share, BAND);
-    let at = if stage.components[0].is_bending() { format!("{place:.1} 1/m") } else { format!("{place:.4}") };
-    let said = format!("known to ± {:.1} % of its largest stress only, at {at}", 100.0 * share);
+    let (quantity, at) = match stage.components[0].is_bending() {
+        true => ("moment", format!("{place:.1} 1/m")),
+        false => ("stress", format!("{place:.4}")),
+    };
+    let said = format!("known to ± {:.1} % of its largest {quantity} only, at {at}", 100.0 * share);
     (grade > Grade::Green).then_some((grade, said))
 }
 

@@ -16,7 +16,11 @@ impl CurveFile {
         let table = Table::read(path)?;
         let names = |kind: &Kind| [kind.columns()[0], kind.columns()[2]];
         let is_of = |kind: &Kind| names(kind).iter().any(|name| table.has_quantity(name));
-        let kind = Kind::ALL.into_iter().find(is_of).unwrap_or(Kind::Membrane);
+        let Some(kind) = Kind::ALL.into_iter().find(is_of) else {
+            let expected = "a curve: curvature_per_m and moment_n, or strain and stress_n_per_m (import tables of forces and \
+                            lengths first)";
+            return Err(table.bad_header("header", table.names(), expected));
+        };
         let [axis, stiffness, stress, low, high] = kind.columns();
         // Other kinds have none beside their own.
         let beside = if kind == Kind::Green { ENGINEERING } else { [axis, stress] };

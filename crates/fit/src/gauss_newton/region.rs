@@ -6,6 +6,7 @@
 
 use super::Domain;
 use crate::least_squares::{Active, LeastSquares, Smoothing, Solution, Status, Triangle};
+use crate::robust::Robust;
 use nalgebra::{DMatrix, DVector};
 
 /// A step may be longer than the radius by this factor, or shorter by its inverse: more precision buys nothing.
@@ -26,8 +27,22 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn new(point: DVector<f64>, residual: DVector<f64>, jacobian: DMatrix<f64>) -> Self {
-        let triangle = Triangle::reduce(&jacobian, &residual);
+    pub(super) fn new(
+        point: DVector<f64>,
+        residual: DVector<f64>,
+        jacobian: DMatrix<f64>,
+        robust: Option<Robust>,
+    ) -> Self {
+        let triangle = match robust {
+            None => Triangle::reduce(&jacobian, &residual),
+            Some(robust) => {
+                let curvature = residual.map(|bent| robust.curvature(bent));
+                let rows = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
+                    curvature[i] * jacobian[(i, j)]
+                });
+                Triangle::reduce(&rows, &residual.component_div(&curvature))
+            }
+        };
         Self { point, residual, jacobian, triangle }
     }
 

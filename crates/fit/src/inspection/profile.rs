@@ -9,7 +9,7 @@
 use super::{area, is_seen};
 use crate::frame::{Sequence, Table};
 use crate::measure::mean;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A slice with fewer vertices seen says nothing.
 const FEWEST: usize = 2;
@@ -85,16 +85,22 @@ fn reach(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vec<f64>> {
     Some(rest.iter().map(|rest| rest.dot(&along) - back).collect())
 }
 
-/// The direction of the rest mesh that is farther out the farther along, in all frames together; unit length.
+/// The direction of the rest mesh along which places are farther out, in all frames together, whatever part of the sheet was
+/// seen; unit length.
 pub(super) fn outward_at_rest(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vector3<f64>> {
     let rest = &sequence.mesh.positions;
-    let mut along = Vector3::zeros();
+    let (mut along, mut spread) = (Vector3::zeros(), Matrix3::zeros());
     for (_, positions) in shapes(sequence) {
         let seen = || rest.iter().zip(positions).filter(|(_, place)| is_seen(place));
         let middle = mean(seen().map(|(rest, _)| *rest));
-        along += seen().map(|(rest, place)| (rest - middle) * place.dot(outward)).sum::<Vector3<f64>>();
+        for (rest, place) in seen() {
+            along += (rest - middle) * place.dot(outward);
+            spread += (rest - middle) * (rest - middle).transpose();
+        }
     }
-    along.try_normalize(0.0)
+    // The rest mesh is flat.
+    let inverse = spread.pseudo_inverse(1e-9 * spread.trace()).ok()?;
+    (inverse * along).try_normalize(0.0)
 }
 
 /// The shapes that were measured, with the indices of their frames.

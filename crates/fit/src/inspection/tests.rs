@@ -113,10 +113,55 @@ fn sheets_that_hang_along_other_yarns_than_their_kind_says_are_refused() {
 }
 
 #[test]
+fn vertices_beside_a_clip_that_move_with_it_are_told() {
+    for held in [8..17, 0..13, 5..20] {
+        let notices = noticed("stretch-weft", |_, sequence| {
+            sequence.clips[0].vertices = sequence.clips[0].vertices[held.clone()].to_vec();
+        });
+        let beside = format!("{} vertices of clip low, and {} beside", held.len(), 25 - held.len());
+        doubted(&notices, &["test.toml clips.vertices", &beside]);
+    }
+    // Those of a specimen that is free there lag.
+    let notices = noticed("stretch-weft", |_, sequence| {
+        let clips = sequence.clips.iter_mut();
+        clips.for_each(|clip| clip.vertices = clip.vertices[8..17].to_vec());
+        let rest = sequence.mesh.positions.clone();
+        for frame in &mut sequence.frames {
+            let [low, high] = [0, 1].map(|clip| frame.poses[clip].translation.vector.x);
+            for (place, rest) in frame.positions.iter_mut().flatten().zip(&rest) {
+                let beside = f64::max((rest.y + 0.05).abs() - 0.017, 0.0).min(0.05);
+                let side = if rest.x < -0.05 { 1.0 } else { -1.0 };
+                place.x += side * (high - low) / 0.1 * beside;
+            }
+        }
+    });
+    assert!(notices.iter().all(|notice| !notice.place.contains("clips.vertices")), "{notices:?}");
+}
+
+#[test]
+fn cords_that_pull_a_specimen_to_one_side_are_told() {
+    let notices = noticed("stretch-weft", |_, sequence| {
+        let cords = sequence.frames.iter_mut().flat_map(|frame| &mut frame.cords);
+        cords.filter(|cord| cord.clip == 1).for_each(|cord| cord.force *= 1.5);
+    });
+    doubted(&notices, &["forces.csv", "to one side in 11 of 11 frames", "calibration of each load cell"]);
+    let one_cord_left_out = noticed("shear", |_, sequence| {
+        let cords = sequence.frames.iter_mut().flat_map(|frame| &mut frame.cords);
+        cords.filter(|cord| cord.clip == 2).for_each(|cord| cord.force.x = 0.0);
+    });
+    assert!(
+        one_cord_left_out.iter().any(|notice| notice.found.contains("to one side")),
+        "{one_cord_left_out:?}"
+    );
+}
+
+#[test]
 fn a_picture_frame_that_pulls_before_it_is_sheared_is_doubted() {
     let notices = noticed("shear", |_, sequence| {
         let cords = sequence.frames.iter_mut().flat_map(|frame| &mut frame.cords);
-        cords.filter(|cord| cord.clip == 1).for_each(|cord| cord.force.y += 1.5);
+        for cord in cords {
+            cord.force.y += [0.0, 1.5, 0.0, -1.5][cord.clip];
+        }
     });
     doubted(&notices, &["forces.csv frame 0", "on clip right before the frame is sheared"]);
 }

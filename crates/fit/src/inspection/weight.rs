@@ -1,4 +1,4 @@
-//! The weight of cloth and clips against what the cords bear.
+//! What the cords pull with against weight, and against each other: a specimen at rest is in balance.
 
 use super::{NOISE_N, Notice, Severity, area, median};
 use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
@@ -7,6 +7,9 @@ use nalgebra::Vector3;
 /// Of the weight: cords have friction, and scales are read to less.
 const SHARE: f64 = 0.1;
 
+/// In standard deviations.
+const SURE: f64 = 6.0;
+
 /// Two ratios, or two densities, are one within these factors: of a density only what clips leave over is known.
 const ONE_RATIO: f64 = 1.15;
 const ONE_DENSITY: f64 = 1.5;
@@ -14,8 +17,12 @@ const ONE_DENSITY: f64 = 1.5;
 /// Of the forces: what cells are sure of, and what a tilt of their axes by a third of a degree makes.
 const FORCE_SHARE: f64 = 5e-3;
 
-/// Doubts a sequence whose cords bear another weight than cloth and clips have.
+/// Of the larger force: cords of clips that do not move may hold by friction.
+const APART: f64 = 0.1;
+
+/// Doubts a sequence whose cords bear another weight than cloth and clips have, or do not balance each other across it.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    notices.extend(unbalanced(sequence));
     if let Some(weight) = Weight::of(fabric, sequence).filter(Weight::disagrees) {
         notices.push(Notice {
             severity: Severity::Doubt,
@@ -33,6 +40,41 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
                 .into(),
         });
     }
+}
+
+/// Forces that do not add up to zero across gravity, in most frames to the same side of what they pull.
+fn unbalanced(sequence: &Sequence) -> Option<Notice> {
+    if sequence.force_direction.is_some() || sequence.clips.len() < 2 {
+        return None;
+    }
+    let up = sequence.gravity.try_normalize(0.0).unwrap_or_default();
+    let frames = sequence.frames.iter().enumerate().filter_map(|(index, frame)| {
+        let forces: Option<Vec<Vector3<f64>>> = (0..sequence.clips.len())
+            .map(|clip| frame.clip_force(clip).map(|force| force - up * force.dot(&up)))
+            .collect();
+        let forces = forces?;
+        let largest = forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        Some((index, forces.iter().sum::<Vector3<f64>>().norm(), largest))
+    });
+    let mut frames: Vec<(usize, f64, f64)> = frames.collect();
+    let noise = sequence.noise.and_then(|noise| noise.force_n).unwrap_or(NOISE_N);
+    let allowed = SURE * noise * (sequence.clips.len() as f64).sqrt();
+    let off = frames.iter().filter(|(_, sum, largest)| *sum > f64::max(APART * largest, allowed)).count();
+    let count = frames.len();
+    frames.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (index, sum, largest) = frames.pop().filter(|_| 2 * off > count)?;
+    Some(Notice {
+        severity: Severity::Doubt,
+        sequence: sequence.name.clone(),
+        place: "forces.csv".into(),
+        found: format!(
+            "cords that pull the specimen to one side in {off} of {count} frames, most in frame {index}, by {sum:.3} N where the \
+             largest force is {largest:.3} N"
+        ),
+        expected: "forces that add up to zero across gravity: the calibration of each load cell, or cords that forces.csv leaves \
+                   out"
+        .into(),
+    })
 }
 
 /// Doubts tests that weigh nothing themselves by what the cords of others of the set bear: stretch where they all bear one
@@ -120,7 +162,7 @@ impl Weight {
         let error = noise * (sequence.clips.len() as f64 / along.len() as f64).sqrt();
         Some(Self {
             borne: median(along),
-            error: f64::max(6.0 * error, FORCE_SHARE * median(sizes)),
+            error: f64::max(SURE * error, FORCE_SHARE * median(sizes)),
             cloth: area(sequence) * fabric.areal_density_kg_m2,
             clips: sequence.clips.iter().map(|clip| clip.mass_kg).sum(),
             gravity,

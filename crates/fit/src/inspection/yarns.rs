@@ -1,13 +1,16 @@
 //! Along which yarns a sheet hangs off its table, against the kind of its test.
 
 use super::profile::outward_at_rest;
-use super::{Notice, Severity};
+use super::{Notice, Severity, is_seen};
 use crate::frame::{Fabric, Kind, Sequence};
 use crate::measure::affine_map;
 use nalgebra::Vector3;
 
 /// A specimen is cut and laid as straight as this, °.
 const STRAIGHT: f64 = 15.0;
+
+/// So many vertices, over all frames, tell a direction.
+const FEWEST: usize = 20;
 
 /// Refuses a test of bending whose sheet hangs along other yarns than its kind says.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
@@ -35,6 +38,15 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
 
 /// The angle between weft and the direction of the rest mesh that hangs out farthest, 0 to 90°.
 fn angle_from_weft(sequence: &Sequence, outward: &Vector3<f64>) -> Option<f64> {
+    let seen = sequence
+        .frames
+        .iter()
+        .filter_map(|frame| frame.positions.as_ref())
+        .flatten()
+        .filter(|place| is_seen(place));
+    if seen.count() < FEWEST {
+        return None;
+    }
     let along = outward_at_rest(sequence, outward)?;
     let map = affine_map(&sequence.mesh.material, &sequence.mesh.positions)?;
     let material = (map.transpose() * map).try_inverse()? * map.transpose() * along;

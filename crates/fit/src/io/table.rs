@@ -116,6 +116,11 @@ impl Table {
         self.header.iter().any(|found| same_quantity(found, name))
     }
 
+    /// The columns' names, for messages.
+    pub fn names(&self) -> String {
+        self.header.iter().map(shown).collect::<Vec<_>>().join(", ")
+    }
+
     /// Where a column is, if it exists.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|found| found == name)

@@ -76,7 +76,8 @@ impl Grip {
                     sequence.clips[clip].name,
                     apart(&sequence.frames[frame])
                 ),
-                "clips that do not overlap (they grip what lies within half a simulation cell)",
+                "clips that do not overlap (they grip what lies within half a simulation cell), and poses that map rest points to where \
+                 they are, x = R(q) x_rest + t",
             ));
         }
         let pair = [other, clip];

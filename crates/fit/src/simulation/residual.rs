@@ -5,6 +5,7 @@ use super::{Objective, Simulation};
 use crate::boundary::Whitening;
 use crate::gauss_newton::{Evaluation, Residuals};
 use crate::replica::{Replica, ReplicaFrame};
+use crate::robust::Robust;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::{Solver, Status};
 use cloth_sim::material::Component;
@@ -141,6 +142,10 @@ pub(super) fn whitening(solver: &mut Solver<'_>, replica: &Replica, frame: &Repl
 
 impl Residuals for Simulation<'_> {
     type Error = Infallible;
+
+    fn robust(&self) -> Option<Robust> {
+        self.task.robust
+    }
 
     /// Residuals of all measurements, frame by frame, in units of the noise where that is known, else N or m.
     fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {

@@ -198,7 +198,10 @@ fn simulate<'r>(
             replicas,
             format!("no frame with an equilibrium ({status})"),
             match plan.objective {
-                Objective::Forces => "clips that deform the specimen evenly, on cells that are not too long",
+                Objective::Forces => {
+                    "clips at the ends of the specimen that deform it evenly (cloth behind a clip is loose: end the mesh there), on \
+                     cells that are not too long"
+                }
                 Objective::Positions => "a sheet that hangs off the table under its weight",
             },
         ));

@@ -343,6 +343,17 @@ fn a_unit_is_never_guessed() {
 }
 
 #[test]
+fn a_strip_that_only_gets_shorter_and_a_zero_that_no_reading_reaches_are_refused() {
+    let shrinking = StripTest { free_length: FreeLength::Length(0.12), ..test() };
+    let words = "t.csv clamp_distance_m: found no clamps farther apart than the free length, 0.12 m, expected an extension \
+                 that grows where the strip is pulled: the other sign, or another free length";
+    assert_eq!(message(&plain(), &shrinking), words);
+    let words =
+        "zero: found 2, expected a reading with nothing in the clamps: at most the largest force, 0.8 N";
+    assert_eq!(message(&plain(), &StripTest { zero: 2.0, ..test() }), words);
+}
+
+#[test]
 fn bad_settings_are_refused() {
     let check = |test: StripTest, expected: &str| assert_eq!(message(&plain(), &test), expected);
     let length = "expected a length above 0 and at most 10 m";
@@ -359,7 +370,7 @@ fn bad_settings_are_refused() {
         StripTest { free_length: FreeLength::Preload(0.0), ..test() },
         "preload: found 0, expected a force above 0, in N",
     );
-    check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a finite force, in N");
+    check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a force of at most 1e6, in N");
     check(StripTest { compliance: -1.0, ..test() }, "compliance: found -1, expected 0 or more, in m/N");
     check(
         StripTest { free_length: FreeLength::Length(0.0), ..test() },
@@ -369,7 +380,7 @@ fn bad_settings_are_refused() {
         StripTest { free_length: FreeLength::Preload(0.0), ..test() },
         "preload: found 0, expected a force above 0, in N",
     );
-    check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a finite force, in N");
+    check(StripTest { zero: f64::NAN, ..test() }, "zero: found NaN, expected a force of at most 1e6, in N");
     check(StripTest { compliance: -1.0, ..test() }, "compliance: found -1, expected 0 or more, in m/N");
     check(
         StripTest { every: 0, ..test() },

@@ -79,10 +79,10 @@ pub struct StripOptions {
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub force: Column,
     /// Reading of the load cell with nothing in it; it is taken off every force
-    #[arg(long, value_name = "N", default_value_t = 0.0)]
+    #[arg(long, value_name = "N", default_value_t = 0.0, allow_hyphen_values = true)]
     pub zero: f64,
     /// How much machine and clamps lengthen by a newton; it is taken off the extension
-    #[arg(long, value_name = "M_PER_N", default_value_t = 0.0)]
+    #[arg(long, value_name = "M_PER_N", default_value_t = 0.0, allow_hyphen_values = true)]
     pub compliance_m_per_n: f64,
     /// Column of the branches' numbers [default: branch, if there; else a branch ends where the extension
     /// turns back by more than 2 % of its range]
@@ -146,7 +146,7 @@ pub enum StripDirection {
 /// The table, the set or an option is not what it should be; the operating system refuses.
 pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let test = strip_test(options);
-    let mut strip = read_strip(&options.file, &test)?;
+    let mut strip = read_strip(&options.file, &test).map_err(by_option)?;
     note_lines_above(telling, &options.file, &test.columns())?;
     let place = options.set.join(&strip.sequence.name);
     refuse_replacing(&options.file, &place)?;
@@ -237,7 +237,7 @@ fn strip_test(options: &StripOptions) -> StripTest {
     }
 }
 
-/// Names the option that settles why a sequence cannot be added to the set.
+/// Names the option that settles why a table cannot be read, or a sequence not be added to the set.
 fn by_option(error: Error) -> Error {
     let option = match &error {
         Error::Input { line: None, field, .. } => match field.as_str() {
@@ -246,6 +246,18 @@ fn by_option(error: Error) -> Error {
             "thickness_m" => "--thickness-m",
             "sequence" => "--sequence, --replace",
             "folder" | "work folder" => "--set",
+            _ => return error,
+        },
+        Error::Setting { field, .. } => match *field {
+            "gauge" => "--gauge-m",
+            "width" => "--width-m",
+            "free_length" => "--free-length-m",
+            "preload" => "--preload",
+            "zero" => "--zero",
+            "compliance" => "--compliance-m-per-n",
+            "every" => "--every",
+            "branches" => "--branches",
+            "force_noise" => "--force-noise-n",
             _ => return error,
         },
         _ => return error,

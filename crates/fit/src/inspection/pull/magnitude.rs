@@ -9,6 +9,8 @@ const SOFTEST_M: f64 = 2.0;
 const STRONGEST: f64 = 1e6;
 /// Stiffness by areal density of common cloth, m²/s², to find the unit that is meant.
 const COMMON: f64 = 1e4;
+/// A unit is likely that makes it common within this factor.
+const LIKELY: f64 = 100.0;
 /// Units in newtons.
 const UNITS: [(&str, f64); 8] = [
     ("MN", 1e6),
@@ -42,10 +44,12 @@ pub(super) fn check(pull: &Pull, areal_density: f64) -> Option<Notice> {
         digits(stiffness, 3),
     );
     let off = |(_, unit): &&(&str, f64)| (unit * stiffness / (COMMON * areal_density)).ln().abs();
-    let likely = UNITS.iter().min_by(|a, b| off(a).total_cmp(&off(b))).map_or("", |(name, _)| name);
+    let likely =
+        UNITS.iter().filter(|unit| off(unit) <= f64::ln(LIKELY)).min_by(|a, b| off(a).total_cmp(&off(b)));
+    let likely = likely.map_or(String::new(), |(name, _)| format!(" (as {name} it would do)"));
     let expected = format!(
         "{lowest:.1} to {:.0e} N/m, and a stress of at most {:.1e} N/m of a cloth of {areal_density} kg/m²: \
-         another unit than N (as {likely} it would do), or another width",
+         another unit than N{likely}, or another width",
         MEMBRANE_STIFFNESS[1],
         STRONGEST * areal_density,
     );

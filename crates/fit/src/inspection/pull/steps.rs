@@ -6,13 +6,16 @@
 //!         ╱           gets longer       ╱      go back             ╱
 //! ```
 
-use super::{NOISE, Notice, Pull, Reading, Severity, digits, median};
+use super::{NOISE, Notice, Pull, Reading, Severity, digits, median, noise};
+use std::collections::BTreeMap;
 
-/// Of the largest force: what yarns lose one by one is less, and what is gained on the way back.
-const LOST: f64 = 0.02;
+/// Of the largest force: what yarns lose one by one, and what a strip pulled by hand loses where the hand rests, is less; and
+/// what is gained on the way back.
+const LOST: f64 = 0.04;
 const GAINED: f64 = 0.005;
-/// Of a usual step of the clips: less is standing still.
+/// Of a usual step of the clips: less is standing still, where force relaxes; more is going on.
 const STILL: f64 = 0.1;
+const GOING: f64 = 0.5;
 /// So many readings that are the same to the last digit are no chance.
 const ALIKE: usize = 3;
 
@@ -22,14 +25,24 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
         return Vec::new();
     }
     let steps = pull.readings.windows(2).map(|two| (two[1].separation - two[0].separation).abs());
-    let still = STILL * median(steps.filter(|step| *step > 0.0).collect()).unwrap_or(0.0);
-    let least = |share: f64| (2.0 * NOISE * pull.noise).max(share * pull.largest_force());
-    let two = |is_meant: &dyn Fn(f64, f64) -> bool| {
-        let mut pairs = pull.readings.windows(2).map(|two| (&two[0], &two[1]));
-        pairs.find(|(a, b)| is_meant(b.separation - a.separation, b.force - a.force))
-    };
-    let slip = two(&|longer, rise| longer > still && rise < -least(LOST));
-    let back = two(&|longer, rise| longer < -still && rise > least(GAINED));
+    let usual = median(steps.filter(|step| *step > 0.0).collect()).unwrap_or(0.0);
+    let (still, going) = (STILL * usual, GOING * usual);
+    // A branch may be rougher than most: a strip that is pulled for the first time.
+    let branches = pull.readings.chunk_by(|a, b| a.branch == b.branch);
+    let rough: BTreeMap<usize, f64> =
+        branches.map(|branch| (branch[0].branch, noise(branch).max(pull.noise))).collect();
+    let least = |share: f64, branch: usize| (2.0 * NOISE * rough[&branch]).max(share * pull.largest_force());
+    let slip = (1..pull.readings.len()).find(|&row| {
+        let [a, b] = [row - 1, row].map(|row| &pull.readings[row]);
+        // Before clips turn they rest.
+        let goes_on = pull.readings.get(row + 1).is_none_or(|c| c.separation - b.separation > going);
+        b.separation - a.separation > going && a.force - b.force > least(LOST, a.branch) && goes_on
+    });
+    let back = (1..pull.readings.len()).find(|&row| {
+        let [a, b] = [row - 1, row].map(|row| &pull.readings[row]);
+        a.separation - b.separation > still && b.force - a.force > least(GAINED, a.branch)
+    });
+    let [slip, back] = [slip, back].map(|row| row.map(|row| (&pull.readings[row - 1], &pull.readings[row])));
     let tell = |(a, b): (&Reading, &Reading), what: &str, expected: &str| {
         let found = format!(
             "{} N with the clamps {:.2} mm apart, and then {} N at {:.2} mm: {what}",
@@ -43,7 +56,7 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     let slip = slip.map(|pair| {
         tell(
             pair,
-            "the strip slipped, or yarns broke",
+            "the strip slipped, yarns broke, or it relaxed while the pull paused",
             "force that rises while a strip gets longer: rows up to there",
         )
     });

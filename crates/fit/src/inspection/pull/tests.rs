@@ -116,6 +116,12 @@ fn sound_strips_raise_no_notice() {
         std::iter::once([s, force * regained])
             .chain((1..=hold).map(move |time| [s, relaxed(f64::from(time))]))
     });
+    // It relaxes while the clips come to a halt, and is let back.
+    let up = loading(|s| law(s, GAUGE));
+    let [top, most] = *up.last().unwrap();
+    let halt = [top + 1.2e-4, 0.93 * most];
+    let down = up.iter().rev().map(|&[s, force]| [s, 0.8 * force]);
+    let turned = up.iter().copied().chain([halt]).chain(down);
     let late = course(0.21, 0.22, 50).into_iter().map(|s| [s, law(s, GAUGE)]);
     let sparse = course(GAUGE, 0.22, 5).into_iter().map(|s| [s, law(s, GAUGE)]);
     let strips: Vec<(&str, Vec<[f64; 2]>)> = vec![
@@ -128,6 +134,7 @@ fn sound_strips_raise_no_notice() {
         ("a cloth that is stiff at first", loading(stiff_first)),
         ("step by step", steps.collect()),
         ("held at the top", held.collect()),
+        ("turned slowly", turned.collect()),
         ("seen from 5 %", late.collect()),
         ("a knit from 5 %", course(0.21, 0.24, 50).into_iter().map(|s| [s, knit(s)]).collect()),
         ("six rows", sparse.collect()),

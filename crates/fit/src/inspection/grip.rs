@@ -1,0 +1,78 @@
+//! Vertices beside a clip that move as it does, though it does not list them.
+//!
+//! ```text
+//!  ┃●──●──●       listed
+//!  ┃●──●──●
+//!   ○──●──●  d    beside: a free one lags by about ε d along the pull, one that the clip holds does not
+//! ```
+
+use super::{Notice, Severity, is_seen, position_noise};
+use crate::frame::{Fabric, Kind, Sequence};
+use crate::measure::{clip_centres, mean, moved};
+use crate::specimen::{Rectangle, bounds};
+use nalgebra::Vector2;
+
+/// A vertex that lags by less than this share of ε d is held; a free one lags by half of it at least.
+const HELD: f64 = 0.25;
+/// The lags are looked at where together they would be so many times the noise.
+const SURE: f64 = 10.0;
+/// Vertices on one line lie so near it, as a share of the specimen: rounding.
+const TIE: f64 = 1e-6;
+/// Fewer vertices may be cut askew.
+const FEWEST: usize = 3;
+
+/// Doubts a stretched specimen of which a clip holds more than it says.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+    if stretched && sequence.clips.len() == 2 {
+        notices.extend([0, 1].into_iter().filter_map(|clip| holds_more(sequence, clip)));
+    }
+}
+
+fn holds_more(sequence: &Sequence, clip: usize) -> Option<Notice> {
+    let Rectangle { flat, .. } = Rectangle::of(sequence).ok()?;
+    let listed = &sequence.clips[clip].vertices;
+    let centre = |clip: usize| mean(sequence.clips[clip].vertices.iter().map(|&vertex| flat[vertex]));
+    let between = centre(1 - clip) - centre(clip);
+    let (pull, across) = if between.x.abs() > between.y.abs() { (0, 1) } else { (1, 0) };
+    let [low, high] = bounds(listed.iter().map(|&vertex| flat[vertex]));
+    let tie = TIE * between.norm();
+    let alongside = |place: &Vector2<f64>| place[pull] >= low[pull] - tie && place[pull] <= high[pull] + tie;
+    let beside = flat.iter().enumerate().filter(|(_, place)| alongside(place)).map(|(vertex, place)| {
+        // What is farther off than half the way to the other clip lags as that does.
+        let apart = f64::max(low[across] - place[across], place[across] - high[across]);
+        (vertex, apart.min(0.5 * between.norm()))
+    });
+    let beside: Vec<(usize, f64)> = beside.filter(|(_, apart)| *apart > tie).collect();
+    let rest = &sequence.mesh.positions;
+    let (mut both, mut free) = (0.0, 0.0);
+    for frame in &sequence.frames {
+        let (Some(positions), [_, _]) = (&frame.positions, &frame.poses[..]) else { continue };
+        let centres = clip_centres(sequence, frame);
+        let now = centres[1 - clip] - centres[clip];
+        let strain = now.norm() / between.norm() - 1.0;
+        let Some(toward) = now.try_normalize(0.0).filter(|_| strain > 0.0) else { continue };
+        for &(vertex, apart) in beside.iter().filter(|(vertex, _)| is_seen(&positions[*vertex])) {
+            let lag = (positions[vertex] - moved(&frame.poses[clip], &rest[vertex])).dot(&toward);
+            both += lag * strain * apart;
+            free += (strain * apart).powi(2);
+        }
+    }
+    if beside.len() < FEWEST || free.sqrt() < SURE * position_noise(sequence) || both > HELD * free {
+        return None;
+    }
+    Some(Notice {
+        severity: Severity::Doubt,
+        sequence: sequence.name.clone(),
+        place: "test.toml clips.vertices".into(),
+        found: format!(
+            "{} vertices of clip {}, and {} beside them that were seen to move as it does",
+            listed.len(),
+            sequence.clips[clip].name,
+            beside.len()
+        ),
+        expected:
+            "all that it holds: cloth beside a clip is taken to be free, and what is left to be stiffer"
+                .into(),
+    })
+}
