@@ -115,3 +115,17 @@ fn vertices_seen_elsewhere_hardly_move_the_curve() {
         assert!((told || ruled > 0.015) && robust < 0.01, "{ruled} {robust}");
     }
 }
+
+#[test]
+fn a_robust_fit_without_known_noise_passes_over_frames_without_an_equilibrium() {
+    let mut set = read_set(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/cotton-denim")).unwrap();
+    set.sequences.retain(|sequence| sequence.name == "stretch-weft");
+    let sequence = &mut set.sequences[0];
+    sequence.noise = None;
+    for cord in sequence.frames[4..=6].iter_mut().flat_map(|frame| &mut frame.cords) {
+        cord.force *= 0.0;
+    }
+    let settings = Settings { robust: Some(3.0), nodes: Some([9, 9]), ..Settings::default() };
+    let report = fit(&set, &[Stage::Stretch], &Knowledge::default(), &settings, &mut Watch::default());
+    assert!(report.is_ok(), "{report:?}");
+}

@@ -207,7 +207,7 @@ fn a_flipped_force_sign_is_named() {
     let cords = set.sequences.iter_mut().flat_map(|s| &mut s.frames).flat_map(|frame| &mut frame.cords);
     cords.for_each(|cord| cord.force = -cord.force);
     let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
-    assert!(error.to_string().contains("check its sign"), "{error}");
+    assert!(error.to_string().contains("its sign, or force_direction"), "{error}");
 }
 
 #[test]

@@ -126,7 +126,7 @@ pub(crate) fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usi
 pub(crate) struct Rectangle {
     frame: Isometry3<f64>,
     /// Extent along x and y of the specimen's frame, m.
-    size: [f64; 2],
+    pub(crate) size: [f64; 2],
     /// Rest positions in the specimen's frame.
     pub(crate) flat: Vec<Vector2<f64>>,
 }

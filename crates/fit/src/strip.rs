@@ -43,8 +43,8 @@ use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
-/// A zero of a load cell is at most this multiple of the largest force that it read.
-const MOST_ZERO: f64 = 1.1;
+/// A machine that lengthens by more than this share of the extension leaves little of it to the strip.
+const MOST_COMPLIANT: f64 = 0.3;
 /// The column of branches that is looked for if none is named.
 const BRANCH: &str = "branch";
 /// The clamps of a tensile test are this many gauge lengths apart; other values are another unit or quantity.
@@ -65,6 +65,8 @@ pub struct Strip {
     repeats: Vec<usize>,
     /// Name of the table.
     table: String,
+    /// Of the way that the machine went, the share that its own lengthening was taken to be.
+    compliant: f64,
 }
 
 impl Strip {
@@ -73,7 +75,7 @@ impl Strip {
     /// * `areal_density` — of the cloth, kg/m², if it is known: the size of the forces is judged by it
     pub fn inspect(&mut self, areal_density: Option<f64>) -> Vec<Notice> {
         let counted = format!("{} row", self.table);
-        let mut notices: Vec<Notice> = self.repeated(&counted).into_iter().collect();
+        let mut notices: Vec<Notice> = self.repeated(&counted).into_iter().chain(self.compliance()).collect();
         notices.extend(pull::inspect(&mut self.sequence, areal_density, &counted, &self.rows));
         self.rows.truncate(self.sequence.frames.len());
         self.branches.truncate(self.sequence.frames.len());
@@ -90,6 +92,16 @@ impl Strip {
         let mut branches = self.branches.clone();
         branches.dedup();
         branches
+    }
+
+    fn compliance(&self) -> Option<Notice> {
+        (self.compliant > MOST_COMPLIANT).then(|| Notice {
+            severity: Severity::Doubt,
+            sequence: self.sequence.name.clone(),
+            place: self.table.clone(),
+            found: format!("a compliance that takes off {:.0} % of the extension", 100.0 * self.compliant),
+            expected: "a machine that hardly gives beside the strip: its unit, metres per newton, and how it was measured".into(),
+        })
     }
 
     fn repeated(&self, counted: &str) -> Option<Notice> {
@@ -128,8 +140,12 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
             "an extension that grows where the strip is pulled: the other sign, or another free length";
         return Err(table.incomplete(&test.extension.column().name, found, expected));
     }
+    let farthest = taken
+        .iter()
+        .map(|reading| reading.separation + test.compliance * reading.force - length)
+        .fold(0.0, f64::max);
     let largest = taken.iter().map(|reading| (reading.force + test.zero).abs()).fold(0.0, f64::max);
-    if test.zero.abs() > MOST_ZERO * largest {
+    if test.zero.abs() > largest {
         return Err(Error::Setting {
             field: "zero",
             found: test.zero.to_string(),
@@ -170,6 +186,7 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
         rows: std::iter::once(0).chain(taken.iter().map(|reading| reading.number)).collect(),
         branches: std::iter::once(first).chain(taken.iter().map(|reading| reading.branch)).collect(),
         repeats,
+        compliant: test.compliance * largest / farthest.max(f64::MIN_POSITIVE),
         table: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
     })
 }

@@ -92,6 +92,11 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     reasons.extend(unsure(stage));
     reasons.extend(stage.sequences.iter().filter_map(far_off));
     reasons.extend(assumed(stage));
+    let odd = stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty());
+    reasons.extend(odd.map(|sequence| {
+        let frames: Vec<String> = sequence.outliers.iter().take(4).map(usize::to_string).collect();
+        (Grade::Amber, format!("frame {} of {} lies far off the rest", frames.join(", "), sequence.name))
+    }));
     let used: usize = stage.sequences.iter().map(|sequence| sequence.frames).sum();
     let dropped = stage.dropped.len() as f64 / (stage.dropped.len() + used).max(1) as f64;
     if dropped > DROPPED {

@@ -66,8 +66,9 @@ fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
     let odd = stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty());
     let odd: Vec<String> = odd.map(|s| format!("frame {} of {}", some(&s.outliers), s.name)).collect();
     if !odd.is_empty() {
+        let robust = if stage.interventions.residuals_bent == 0 { ", or fit with --robust" } else { "" };
         return Some(format!(
-            "far off the rest: {}: look there before anything else, or fit with --robust",
+            "far off the rest: {}: look at them and their neighbours first{robust}",
             list(odd)
         ));
     }

@@ -1,4 +1,4 @@
-//! Vertices beside a clip that move as it does, though it does not list them.
+//! Clips that hold part of a side, or list part of what they hold.
 //!
 //! ```text
 //!  ┃●──●──●       listed
@@ -21,21 +21,29 @@ const TIE: f64 = 1e-6;
 /// Fewer vertices may be cut askew.
 const FEWEST: usize = 3;
 
-/// Doubts a stretched specimen of which a clip holds more than it says.
+/// A clip that grips this share of its side grips all of it.
+const WHOLE: f64 = 0.98;
+
+/// Doubts a stretched specimen whose clips do not hold whole sides: with 83 % of a side a fit that leaves shear out makes denim
+/// 12 % too stiff. More so where a clip holds more than it says.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
     if stretched && sequence.clips.len() == 2 {
-        notices.extend([0, 1].into_iter().filter_map(|clip| holds_more(sequence, clip)));
+        notices.extend([0, 1].into_iter().filter_map(|clip| holds_part(sequence, clip)));
     }
 }
 
-fn holds_more(sequence: &Sequence, clip: usize) -> Option<Notice> {
-    let Rectangle { flat, .. } = Rectangle::of(sequence).ok()?;
+fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
+    let Rectangle { flat, size, .. } = Rectangle::of(sequence).ok()?;
     let listed = &sequence.clips[clip].vertices;
     let centre = |clip: usize| mean(sequence.clips[clip].vertices.iter().map(|&vertex| flat[vertex]));
     let between = centre(1 - clip) - centre(clip);
     let (pull, across) = if between.x.abs() > between.y.abs() { (0, 1) } else { (1, 0) };
     let [low, high] = bounds(listed.iter().map(|&vertex| flat[vertex]));
+    let share = (high[across] - low[across]) / size[across];
+    if share >= WHOLE {
+        return None;
+    }
     let tie = TIE * between.norm();
     let alongside = |place: &Vector2<f64>| place[pull] >= low[pull] - tie && place[pull] <= high[pull] + tie;
     let beside = flat.iter().enumerate().filter(|(_, place)| alongside(place)).map(|(vertex, place)| {
@@ -58,21 +66,19 @@ fn holds_more(sequence: &Sequence, clip: usize) -> Option<Notice> {
             free += (strain * apart).powi(2);
         }
     }
-    if beside.len() < FEWEST || free.sqrt() < SURE * position_noise(sequence) || both > HELD * free {
-        return None;
-    }
+    let told = beside.len() >= FEWEST && free.sqrt() >= SURE * position_noise(sequence);
+    let more = match told && both <= HELD * free {
+        true => format!(", and {} vertices beside them that were seen to move as it does", beside.len()),
+        false => String::new(),
+    };
+    let name = &sequence.clips[clip].name;
     Some(Notice {
         severity: Severity::Doubt,
         sequence: sequence.name.clone(),
         place: "test.toml clips.vertices".into(),
-        found: format!(
-            "{} vertices of clip {}, and {} beside them that were seen to move as it does",
-            listed.len(),
-            sequence.clips[clip].name,
-            beside.len()
-        ),
-        expected:
-            "all that it holds: cloth beside a clip is taken to be free, and what is left to be stiffer"
-                .into(),
+        found: format!("vertices of clip {name} along {:.0} % of its side{more}", 100.0 * share),
+        expected: "all that it holds, and that the whole side: cloth beside a clip is sheared, which a fit of stretch leaves out, \
+                   so that the curve comes out too stiff"
+            .into(),
     })
 }

@@ -2,6 +2,7 @@
 
 use super::{NOISE_N, Notice, Severity, area, median};
 use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
+use crate::measure::mean;
 use nalgebra::Vector3;
 
 /// Of the weight: cords have friction, and scales are read to less.
@@ -16,6 +17,9 @@ const ONE_DENSITY: f64 = 1.5;
 
 /// Of the forces: what cells are sure of, and what a tilt of their axes by a third of a degree makes.
 const FORCE_SHARE: f64 = 5e-3;
+
+/// Forces that vary by less than this share (rms) from frame to frame are one, but for friction of the cords.
+const ALIKE: f64 = 0.25;
 
 /// Of the larger force: cords of clips that do not move may hold by friction.
 const APART: f64 = 0.1;
@@ -54,15 +58,34 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
             .collect();
         let forces = forces?;
         let largest = forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
-        Some((index, forces.iter().sum::<Vector3<f64>>().norm(), largest))
+        Some((index, forces.iter().sum(), largest))
     });
-    let mut frames: Vec<(usize, f64, f64)> = frames.collect();
+    let mut frames: Vec<(usize, Vector3<f64>, f64)> = frames.collect();
     let noise = sequence.noise.and_then(|noise| noise.force_n).unwrap_or(NOISE_N);
     let allowed = SURE * noise * (sequence.clips.len() as f64).sqrt();
-    let off = frames.iter().filter(|(_, sum, largest)| *sum > f64::max(APART * largest, allowed)).count();
+    let off =
+        frames.iter().filter(|(_, sum, largest)| sum.norm() > f64::max(APART * largest, allowed)).count();
     let count = frames.len();
-    frames.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let usual = mean(frames.iter().map(|(_, sum, _)| *sum));
+    let squares: f64 = frames.iter().map(|(_, sum, _)| (sum - usual).norm_squared()).sum();
+    let varies = (squares / count as f64).sqrt();
+    frames.sort_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
     let (index, sum, largest) = frames.pop().filter(|_| 2 * off > count)?;
+    if varies <= f64::max(allowed, ALIKE * usual.norm()) {
+        return Some(Notice {
+            severity: Severity::Doubt,
+            sequence: sequence.name.clone(),
+            place: "test.toml gravity_m_s2".into(),
+            found: format!(
+                "cords that pull the specimen alike in every frame, by {:.3}, {:.3}, {:.3} N, across gravity",
+                usual.x, usual.y, usual.z
+            ),
+            expected:
+                "gravity against it, if it is weight that they bear: gravity_m_s2, in the axes of forces.csv"
+                    .into(),
+        });
+    }
+    let sum = sum.norm();
     Some(Notice {
         severity: Severity::Doubt,
         sequence: sequence.name.clone(),
@@ -81,7 +104,9 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
 /// and the same multiple of the weight, as of another unit; bending where they all tell one other areal density, to which
 /// rigidity is proportional; both where one test alone cannot tell which.
 pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
-    let weights = set.sequences.iter().map(|sequence| Some((sequence, Weight::of(&set.fabric, sequence)?)));
+    // What does not balance by itself says nothing of others.
+    let balanced = set.sequences.iter().filter(|sequence| unbalanced(sequence).is_none());
+    let weights = balanced.map(|sequence| Some((sequence, Weight::of(&set.fabric, sequence)?)));
     let weighed: Vec<(&Sequence, Weight)> = weights.flatten().collect();
     let off: Vec<&(&Sequence, Weight)> = weighed.iter().filter(|(_, weight)| weight.disagrees()).collect();
     // Those that agree speak for the rest of the set.

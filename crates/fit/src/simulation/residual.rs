@@ -89,7 +89,10 @@ impl Simulation<'_> {
     pub(super) fn typical_residual(&self) -> f64 {
         let results = self.solve_frames(&self.curves(&self.curve), &[], None);
         let mut sizes: Vec<f64> = Vec::new();
-        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+        // A frame without an equilibrium has no residuals.
+        let balanced =
+            self.frames.iter().zip(&results).filter(|(_, result)| result.status == Status::Converged);
+        for (&(replica, frame), result) in balanced {
             let replica = &self.replicas[replica];
             let rows = self.residual_rows(replica, &replica.frames[frame], result, 0);
             sizes.extend(rows.iter().map(|residual| residual.abs()));

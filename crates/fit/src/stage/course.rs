@@ -199,7 +199,7 @@ fn simulate<'r>(
             format!("no frame with an equilibrium ({status})"),
             match plan.objective {
                 Objective::Forces => {
-                    "clips at the ends of the specimen that deform it evenly (cloth behind a clip is loose: end the mesh there), on \
+                    "clips at the ends of the specimen that deform it evenly (cloth behind or beside a clip is loose: end the mesh there), on \
                      cells that are not too long"
                 }
                 Objective::Positions => "a sheet that hangs off the table under its weight",

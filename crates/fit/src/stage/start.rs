@@ -167,7 +167,7 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
         return Err(unfit(
             replicas,
             format!("clip forces that make a stiffness of {mean:.3e} N/m"),
-            "the force that the cords exert on each clip, outward where the specimen is stretched: check its sign",
+            "the force that the cords exert on each clip, outward where the specimen is stretched: its sign, or force_direction",
         ));
     }
     Ok(mean)

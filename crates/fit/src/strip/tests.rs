@@ -354,6 +354,17 @@ fn a_strip_that_only_gets_shorter_and_a_zero_that_no_reading_reaches_are_refused
 }
 
 #[test]
+fn a_machine_that_would_lengthen_as_far_as_it_went_is_doubted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.csv");
+    fs::write(&path, plain()).unwrap();
+    let notices = |compliance| read_strip(&path, &StripTest { compliance, ..test() }).unwrap().inspect(None);
+    // 0.8 N at 16 mm.
+    let said = |notice: &Notice| notice.found.contains("a compliance that takes off 40 % of the extension");
+    assert!(notices(8e-3).iter().any(said) && !notices(1e-3).iter().any(|n| n.found.contains("compliance")));
+}
+
+#[test]
 fn bad_settings_are_refused() {
     let check = |test: StripTest, expected: &str| assert_eq!(message(&plain(), &test), expected);
     let length = "expected a length above 0 and at most 10 m";

@@ -27,6 +27,8 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     let steps = pull.readings.windows(2).map(|two| (two[1].separation - two[0].separation).abs());
     let usual = median(steps.filter(|step| *step > 0.0).collect()).unwrap_or(0.0);
     let (still, going) = (STILL * usual, GOING * usual);
+    let rises = pull.readings.windows(2).map(|two| (two[1].force - two[0].force).abs());
+    let rise = median(rises.collect()).unwrap_or(0.0);
     // A branch may be rougher than most: a strip that is pulled for the first time.
     let branches = pull.readings.chunk_by(|a, b| a.branch == b.branch);
     let rough: BTreeMap<usize, f64> =
@@ -36,7 +38,10 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
         let [a, b] = [row - 1, row].map(|row| &pull.readings[row]);
         // Before clips turn they rest.
         let goes_on = pull.readings.get(row + 1).is_none_or(|c| c.separation - b.separation > going);
-        b.separation - a.separation > going && a.force - b.force > least(LOST, a.branch) && goes_on
+        // What falls back from one high reading has lost nothing.
+        let before = row.checked_sub(2).map_or(f64::MAX, |row| pull.readings[row].force);
+        let lost = a.force.min(before + 2.0 * rise) - b.force;
+        b.separation - a.separation > going && lost > least(LOST, a.branch) && goes_on
     });
     let back = (1..pull.readings.len()).find(|&row| {
         let [a, b] = [row - 1, row].map(|row| &pull.readings[row]);
