@@ -17,7 +17,7 @@ use crate::element::{
     StrainPass, gather,
 };
 use crate::error::{Error, Result};
-use crate::linear::Pattern;
+use crate::linear::matrix::Pattern;
 use crate::load::{Held, lumped_masses};
 use crate::material::{Component, Curves};
 use crate::membrane::Membrane;

@@ -11,7 +11,8 @@
 use crate::cloth::{Cloth, ForceScale};
 use crate::element::Curvature;
 use crate::increment::Increment;
-use crate::linear::{Factor, Linear};
+use crate::linear::Linear;
+use crate::linear::cholesky::Factor;
 use crate::material::Curves;
 use nalgebra::Vector3;
 

@@ -65,7 +65,6 @@
 
 pub mod bending;
 pub mod cloth;
-mod conjugate_gradient;
 pub mod curve;
 pub mod descent;
 pub mod dynamics;
@@ -81,3 +80,4 @@ pub mod membrane;
 pub mod mesh;
 pub mod rigid;
 pub mod samples;
+mod sequence;

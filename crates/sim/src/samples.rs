@@ -11,10 +11,10 @@
 use crate::cloth::{Cloth, Problem};
 use crate::curve::StiffnessCurve;
 use crate::error::Result;
-use crate::linear::irregular;
 use crate::load::{Guided, Held};
 use crate::material::{Component, Compression, Curves, Model};
 use crate::mesh::{Diagonals, Grid, Mesh};
+use crate::sequence::irregular;
 use nalgebra::{Matrix3x2, Vector2, Vector3};
 
 /// Side of the square samples, m.

@@ -10,7 +10,7 @@
 //! Source: Baraff and Witkin 1998, §5.
 
 use crate::error::Result;
-use crate::linear::Pattern;
+use crate::linear::matrix::Pattern;
 use crate::load::Guided;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;

@@ -2,7 +2,8 @@
 
 use super::HELD;
 use crate::element::{Element, Pass, lower_entries};
-use crate::linear::{Pattern, order};
+use crate::linear::matrix::Pattern;
+use crate::linear::ordering::order;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 

@@ -8,11 +8,12 @@
 
 use super::{LinearSolver, Newton, Settings, State, Status, Step, Work};
 use crate::cloth::Cloth;
-use crate::conjugate_gradient::ConjugateGradient;
 use crate::element::Curvature;
 use crate::equilibrium::{self, Solver, Tolerance};
 use crate::increment::Increment;
-use crate::linear::{Factor, Linear};
+use crate::linear::Linear;
+use crate::linear::cholesky::Factor;
+use crate::linear::conjugate_gradient::ConjugateGradient;
 use crate::material::Curves;
 use nalgebra::{Matrix3, Vector3};
 

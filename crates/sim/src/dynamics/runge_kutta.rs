@@ -5,8 +5,8 @@ use crate::cloth::{Cloth, ForceScale};
 use crate::curve::{NegativeStrain, StiffnessCurve};
 use crate::element::Curvature;
 use crate::equilibrium::Remedies;
-use crate::linear::irregular;
 use crate::material::Curves;
+use crate::sequence::irregular;
 use nalgebra::{Matrix3, Vector3};
 
 /// Where in a step the four slopes are taken, and how much each counts.

@@ -6,7 +6,7 @@
 //!
 //! Source: Baraff and Witkin 1998, §5.2; their filter is in the matrix already, see [`cloth::guide`](crate::cloth).
 
-use crate::linear::{NotPositiveDefinite, Pattern};
+use super::matrix::{NotPositiveDefinite, Pattern};
 
 /// The iteration's memory and settings.
 #[derive(Debug)]

@@ -1,0 +1,93 @@
+//! Sparse symmetric matrices: where their entries stand, and what keeps one from being factorised.
+
+use faer::Side;
+use faer::sparse::SymbolicSparseColMat;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+
+/// The lower triangle of a symmetric sparse matrix, column by column, and the symbolic part of its factorisation.
+#[derive(Debug)]
+pub(crate) struct Pattern {
+    pub(super) lower: SymbolicSparseColMat<usize>,
+    pub(super) symbolic: SymbolicCholesky<usize>,
+}
+
+impl Pattern {
+    /// * `columns` — row indices ≥ the column's own, ascending, the diagonal first
+    ///
+    /// `None` if memory does not suffice.
+    pub(crate) fn new(columns: &[Vec<usize>]) -> Option<Self> {
+        let lower = structure(columns);
+        // With the identity ordering this version reads the upper triangle only, whatever side it is told.
+        let mut upper = vec![Vec::new(); columns.len()];
+        for (column, rows) in columns.iter().enumerate() {
+            rows.iter().for_each(|&row| upper[row].push(column));
+        }
+        let symbolic = factorize_symbolic_cholesky(
+            structure(&upper).as_ref(),
+            Side::Upper,
+            SymmetricOrdering::Identity,
+            // Left to choose, this version factorises sheets in the plane column by column, at 51×51 nodes half as fast.
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..CholeskySymbolicParams::default()
+            },
+        );
+        Some(Self { lower, symbolic: symbolic.ok()? })
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn size(&self) -> usize {
+        self.lower.ncols()
+    }
+
+    /// Number of stored entries.
+    pub(crate) fn entries(&self) -> usize {
+        self.lower.compute_nnz()
+    }
+
+    /// Where an entry of the lower triangle is stored.
+    pub(crate) fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let range = self.lower.col_range(column);
+        let found = self.lower.row_idx()[range.clone()].binary_search(&row).ok()?;
+        Some(range.start + found)
+    }
+
+    /// Where a diagonal entry is stored.
+    pub(crate) fn diagonal(&self, column: usize) -> usize {
+        // Columns start with their diagonal.
+        self.lower.col_range(column).start
+    }
+
+    /// `product` = A x, A symmetric with these lower entries.
+    pub(crate) fn multiply(&self, lower: &[f64], x: &[f64], product: &mut [f64]) {
+        product.fill(0.0);
+        let rows = self.lower.row_idx();
+        for column in 0..self.size() {
+            let range = self.lower.col_range(column);
+            let factor = x[column];
+            let mut sum = lower[range.start] * factor;
+            for (&row, &value) in rows[range.clone()].iter().zip(&lower[range]).skip(1) {
+                product[row] += value * factor;
+                sum += value * x[row];
+            }
+            product[column] += sum;
+        }
+    }
+}
+
+/// The matrix has a pivot that is not positive, or an entry that is not finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct NotPositiveDefinite;
+
+/// The places of the entries, column by column.
+pub(super) fn structure(columns: &[Vec<usize>]) -> SymbolicSparseColMat<usize> {
+    let mut starts = vec![0];
+    starts.extend(columns.iter().scan(0, |sum, column| {
+        *sum += column.len();
+        Some(*sum)
+    }));
+    SymbolicSparseColMat::new_checked(columns.len(), columns.len(), starts, None, columns.concat())
+}
