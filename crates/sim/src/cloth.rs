@@ -25,7 +25,7 @@ use crate::mesh::{Edge, Mesh};
 use alike::{Alike, Twins, are_alike};
 use guide::Guide;
 use nalgebra::{Matrix3, Vector3};
-use numbering::{GraphPass, ScatterPass, columns, leaders, number};
+use numbering::{GraphPass, HELD, ScatterPass, columns, leaders, number};
 use problem::{check, check_pinned};
 use std::collections::BTreeSet;
 
@@ -60,9 +60,6 @@ pub struct Cloth {
     /// Where the diagonal stands among the entries.
     diagonal: Vec<usize>,
 }
-
-/// A coordinate that is no unknown.
-const HELD: usize = usize::MAX;
 
 impl Cloth {
     /// Makes a problem of equilibrium ready.

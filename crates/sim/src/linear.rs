@@ -1,4 +1,4 @@
-//! Sparse symmetric systems: ordering, Cholesky factorisation or conjugate gradients, solution. Only this folder names faer.
+//! Sparse symmetric systems: ordering, factorisation or conjugate gradients. Only this folder names faer.
 //!
 //! The symbolic factorisation is made once for a pattern, the numeric one at every step, into memory that is kept.
 //! Everything runs on the calling thread: cloth this small gains from many frames at once, not from a parallel factor.

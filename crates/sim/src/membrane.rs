@@ -3,13 +3,14 @@
 mod soft_constraint;
 mod spring;
 mod stvk;
+mod triangle;
 
 pub use soft_constraint::SoftTriangle;
 pub(crate) use spring::{Direction, direction_of};
 pub use spring::{Spring, ring_one, ring_two};
 pub use stvk::StvkTriangle;
+pub use triangle::Triangle;
 
-use crate::element::Point;
 use crate::error::Result;
 use crate::material::{Component, Model};
 use crate::mesh::Mesh;
@@ -37,46 +38,5 @@ impl Membrane {
             Model::SoftConstraint => Self::SoftConstraint(triangles().map(SoftTriangle).collect()),
             Model::Stvk => Self::Stvk(triangles().map(StvkTriangle).collect()),
         })
-    }
-}
-
-/// A triangle's rest state: the weights that turn its nodes into the deformation gradient.
-///
-/// ```text
-/// w_u = Σ_a r_u,a x_a      w_v = Σ_a r_v,a x_a        (both 3-vectors; unit and orthogonal at rest)
-/// ```
-///
-/// Source: Miguel et al. 2012, eq. 2; in this form Volino et al. 2009.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Triangle {
-    /// Node indices.
-    pub nodes: [usize; 3],
-    /// Rest area in material coordinates, m².
-    pub area: f64,
-    /// r_u of each node, 1/m.
-    pub weft: [f64; 3],
-    /// r_v of each node, 1/m.
-    pub warp: [f64; 3],
-}
-
-impl Triangle {
-    /// The rest state of one triangle of a mesh.
-    pub fn new(mesh: &Mesh, triangle: usize) -> Self {
-        let nodes = mesh.triangles[triangle];
-        let double_area = mesh.double_area(triangle);
-        let corner = |i: usize| mesh.material[nodes[i % 3]];
-        let opposite = |i: usize| corner(i + 1) - corner(i + 2);
-        Self {
-            nodes,
-            area: 0.5 * double_area,
-            weft: std::array::from_fn(|i| opposite(i).y / double_area),
-            warp: std::array::from_fn(|i| -opposite(i).x / double_area),
-        }
-    }
-
-    /// The deformation gradient's columns w_u and w_v.
-    pub fn deformation<const N: usize>(&self, x: &[Point<N>; 3]) -> [Point<N>; 2] {
-        let combine = |r: &[f64; 3]| x[0] * r[0] + x[1] * r[1] + x[2] * r[2];
-        [combine(&self.weft), combine(&self.warp)]
     }
 }

@@ -9,6 +9,7 @@
 //!
 //! Source: Baraff and Witkin 1998, §5.
 
+use super::numbering::HELD;
 use crate::error::Result;
 use crate::linear::matrix::Pattern;
 use crate::load::Guided;
@@ -59,7 +60,7 @@ pub(super) fn guides(
             Some(block)
         };
         let others = || neighbours[guided.node].iter().map(|&node| unknown_of[3 * node]);
-        let others = || others().filter(|&other| other != super::HELD);
+        let others = || others().filter(|&other| other != HELD);
         Ok(Guide {
             unknown,
             projection: guided.free.projection()?,

@@ -1,11 +1,13 @@
 //! Which unknown every coordinate is, and where every entry of every element's Hessian goes.
 
-use super::HELD;
 use crate::element::{Element, Pass, lower_entries};
 use crate::linear::matrix::Pattern;
 use crate::linear::ordering::order;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
+
+/// A coordinate that is no unknown.
+pub(super) const HELD: usize = usize::MAX;
 
 /// Unknowns in an order of the nodes that keeps the factor sparse, the coordinates of a node together.
 ///

@@ -1,7 +1,6 @@
 //! Soft-constraint triangles: change of length instead of Green strain.
 
-use super::Triangle;
-use super::stvk::{TRIANGLE_COMPONENTS, add_scalar_blocks};
+use super::triangle::{TRIANGLE_COMPONENTS, Triangle, add_scalar_blocks};
 use crate::element::{Block, Element, Point};
 use crate::material::Component;
 

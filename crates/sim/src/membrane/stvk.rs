@@ -1,6 +1,6 @@
 //! Diagonalised St. Venant–Kirchhoff triangles.
 
-use super::Triangle;
+use super::triangle::{TRIANGLE_COMPONENTS, Triangle, add_scalar_blocks};
 use crate::element::{Block, Element, Point};
 use crate::material::Component;
 
@@ -63,27 +63,5 @@ impl<const N: usize> Element<3, N, 3> for StvkTriangle {
         let (sum, difference) = (0.5 * (high + low), 0.5 * (high - low) / radius);
         let clamped = [sum + difference * half, sum - difference * half, difference * s_uv];
         add_scalar_blocks(&self.0, &clamped, blocks);
-    }
-}
-
-/// The components of a triangle's three strains.
-pub(super) const TRIANGLE_COMPONENTS: [Component; 3] =
-    [Component::StretchWeft, Component::StretchWarp, Component::Shear];
-
-/// Adds the blocks (rᵀ S r) I of a stress tensor S.
-#[inline(always)]
-pub(super) fn add_scalar_blocks<const N: usize>(
-    triangle: &Triangle,
-    &[s_u, s_v, s_uv]: &[f64; 3],
-    blocks: &mut [[Block<N>; 3]; 3],
-) {
-    let Triangle { weft, warp, .. } = triangle;
-    for a in 1..3 {
-        for b in 1..=a {
-            let scalar = s_u * weft[a] * weft[b]
-                + s_v * warp[a] * warp[b]
-                + s_uv * (weft[a] * warp[b] + warp[a] * weft[b]);
-            (0..N).for_each(|i| blocks[a][b][(i, i)] += scalar);
-        }
     }
 }
