@@ -1,6 +1,6 @@
 //! When stress grows with strain everywhere: linear inequalities in the control values.
 
-use super::{check_strains, slope_row};
+use super::spline::{check_strains, slope_row};
 use crate::error::Result;
 use nalgebra::DMatrix;
 

@@ -10,7 +10,9 @@
 //!
 //! Source: numerical continuation, Allgower and Georg 1990.
 
-use super::{Equilibrium, Settings, Solver, Status};
+use super::outcome::{Equilibrium, Status};
+use super::settings::Settings;
+use super::solver::Solver;
 use crate::material::Curves;
 
 /// The powers of ten that the membrane's stiffness is first multiplied by, until one leads to a balance.

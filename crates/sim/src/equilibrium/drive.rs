@@ -1,6 +1,8 @@
 //! Load steps: what holds the cloth moves far, and the cloth follows in as few steps as that takes.
 
-use super::{Equilibrium, Settings, Solver, Status};
+use super::outcome::{Equilibrium, Status};
+use super::settings::Settings;
+use super::solver::Solver;
 use crate::cloth::Cloth;
 use crate::material::Curves;
 use crate::rigid::nearest_rotation;

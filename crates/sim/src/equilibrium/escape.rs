@@ -5,7 +5,9 @@
 //!   ╰──╯   ╰──╯        curvature, on to the valley's floor on each, and the lower valley is kept
 //! ```
 
-use super::{Equilibrium, Settings, Solver, Status};
+use super::outcome::{Equilibrium, Status};
+use super::settings::Settings;
+use super::solver::{SINGULAR, Solver};
 use crate::material::Curves;
 
 /// How far the node that moves most is moved, as a share of the mean edge: far beyond rounding, and too little for a
@@ -22,10 +24,28 @@ const TIE: f64 = 1e-6;
 /// An energy lower by less than this share of it is lower by rounding.
 const ROUNDING: f64 = 1e-13;
 
+/// So many unstable states in a row are left.
+const ESCAPES: usize = 6;
+
 impl Solver<'_> {
+    /// A solve whose first matrix uses the strains in `mixed`, if there are any.
+    pub(super) fn settle(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
+        let (before, remedies) = (self.linear.factorisations(), self.remedies);
+        let mut found = self.minimise(curves, x, settings);
+        for _ in 0..ESCAPES {
+            let unstable = found.status == Status::Unstable;
+            if !(settings.escape && unstable && self.leave(curves, x, settings, &mut found)) {
+                break;
+            }
+            self.remedies.escapes += 1;
+        }
+        let (factorisations, remedies) = (self.linear.factorisations() - before, self.remedies - remedies);
+        Equilibrium { factorisations, remedies, ..found }
+    }
+
     /// Moves from an unstable balance to a balanced state of lower energy, if there is one; `found` then describes
     /// that. The counters count on; the solver's state belongs to `x` again.
-    pub(super) fn leave(
+    fn leave(
         &mut self,
         curves: &Curves,
         x: &mut [f64],
@@ -78,7 +98,7 @@ impl Solver<'_> {
     fn way_down(&mut self) -> Option<Vec<f64>> {
         let curvature = self.linear.softest(self.cloth.pattern(), self.shift, &mut self.reduced);
         // Written so that a NaN has no direction either.
-        if !(curvature < -super::SINGULAR * self.mean_diagonal()) {
+        if !(curvature < -SINGULAR * self.mean_diagonal()) {
             return None;
         }
         let mut direction = vec![0.0; 3 * self.cloth.nodes()];

@@ -3,7 +3,9 @@
 //! Source: Miguel et al. 2012, §5.1; how μ is chosen is ours.
 
 use super::newton::DAMPING;
-use super::{Settings, Solver, Status};
+use super::outcome::Status;
+use super::settings::Settings;
+use super::solver::Solver;
 use crate::element::Curvature;
 use crate::material::Curves;
 

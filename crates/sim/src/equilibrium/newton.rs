@@ -4,7 +4,9 @@
 //! K̂ d = −g      K̂ = σ′(ε) ∇ε ∇εᵀ + σ(ε*) ∇²ε      ε* = ε + ∇ε·Δx before the last step Δx
 //! ```
 
-use super::{Settings, Solver, Status, shifts};
+use super::outcome::Status;
+use super::settings::Settings;
+use super::solver::{Solver, shifts};
 use crate::element::Curvature;
 use crate::material::Curves;
 

@@ -1,6 +1,9 @@
 //! An implicit time step: the equilibrium of the energy and what the step adds to it.
 
-use super::{Equilibrium, Remedies, Settings, Solver, Status};
+use super::outcome::{Equilibrium, Status};
+use super::remedies::Remedies;
+use super::settings::Settings;
+use super::solver::Solver;
 use crate::element::Curvature;
 use crate::material::Curves;
 
