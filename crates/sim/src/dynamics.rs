@@ -13,160 +13,32 @@
 //!
 //! Source: Baraff and Witkin 1998; Strohkorb 2019, §3.3. The damping law is ours: see [`Damping`].
 
+mod damping;
+mod energy;
 mod implicit_euler;
 mod runge_kutta;
+mod settings;
+mod state;
+mod step;
 mod wind;
 
+pub use damping::Damping;
+pub use energy::Energies;
+pub use runge_kutta::stable_step;
+pub use settings::{Integrator, LinearSolver, Newton, Settings};
+pub use step::{Status, Step};
 pub use wind::Wind;
 
 use crate::cloth::Cloth;
-use crate::equilibrium::Remedies;
 use crate::error::{Error, Result};
 use crate::material::Curves;
+use energy::Work;
 use implicit_euler::ImplicitEuler;
 use runge_kutta::RungeKutta;
-pub use runge_kutta::stable_step;
-
-/// How a cloth is moved on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Length of a step, s; default 0.01.
-    pub step: f64,
-    /// Default implicit Euler.
-    pub integrator: Integrator,
-    /// Default none.
-    pub damping: Damping,
-    /// The air; default none.
-    pub wind: Option<Wind>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        let integrator =
-            Integrator::ImplicitEuler { newton: Newton::default(), linear: LinearSolver::Direct };
-        Self { step: 0.01, integrator, damping: Damping::default(), wind: None }
-    }
-}
-
-/// The way from one time to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Integrator {
-    /// First order, stable at any step, and lossy: motion faster than some steps dies.
-    ImplicitEuler {
-        /// How the step's equation is solved.
-        newton: Newton,
-        /// How its linear systems are.
-        linear: LinearSolver,
-    },
-    /// Fourth order, explicit: stable up to [`stable_step`].
-    RungeKutta,
-}
-
-/// How an implicit step's equation is solved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Newton {
-    /// Until the largest imbalance of a node is at most this share of the typical force or weight at a node; default 1e-6.
-    Converged {
-        /// That share.
-        tolerance: f64,
-    },
-    /// Linearised once, as published: faster, and neither exact nor always stable.
-    Single,
-}
-
-impl Default for Newton {
-    fn default() -> Self {
-        Self::Converged { tolerance: 1e-6 }
-    }
-}
-
-/// How linear systems are solved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LinearSolver {
-    /// Sparse Cholesky factorisation.
-    Direct,
-    /// Conjugate gradients with a diagonal preconditioner.
-    ConjugateGradient {
-        /// γ: stop at rᵀP⁻¹r ≤ γ² bᵀP⁻¹b; 1e-5 as published.
-        tolerance: f64,
-        /// Most iterations of one system.
-        max_iterations: usize,
-    },
-}
-
-/// Damping in proportion to mass and to stiffness, known as Rayleigh damping.
-///
-/// ```text
-/// C(x) = α M + β K(x)      K(x) = Σ A σ′(ε) ∇ε ∇εᵀ, the stiffness without its geometric part
-/// ```
-///
-/// A mode of angular frequency ω is damped by the share ζ = (α/ω + β ω)/2 of the critical damping. K does not resist rigid
-/// motion, and C never feeds energy in. A step takes it where it starts. The law that Strohkorb 2019 takes over from Kang
-/// and Cho 2002 adds a force to a mass, in whatever units.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Damping {
-    /// α, 1/s.
-    pub mass: f64,
-    /// β, s.
-    pub stiffness: f64,
-}
-
-/// Energies of a state, and the account since the start; J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Energies {
-    /// ½ Σ m |v|².
-    pub kinetic: f64,
-    /// Of all strains.
-    pub elastic: f64,
-    /// −Σ m g·x.
-    pub weight: f64,
-    /// What damping has taken since the start.
-    pub damping: f64,
-    /// What the air has done since the start; drag in still air takes.
-    pub wind: f64,
-    /// What the integrator has lost since the start; negative if it has gained.
-    pub numerical: f64,
-}
-
-impl Energies {
-    /// Kinetic, elastic and weight.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.elastic + self.weight
-    }
-}
+use state::State;
 
 /// A share of the energy that no stable integrator makes.
 const MADE: f64 = 0.1;
-
-/// How a step ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// As it should.
-    Done,
-    /// Its equation is not solved to the tolerance, and the best state is taken; or an explicit integrator has made energy
-    /// out of nothing, as it does where the cloth has become too stiff for its step.
-    NotConverged,
-    /// It led to numbers that are not finite: nothing has moved.
-    NotFinite,
-}
-
-/// The outcome of one step.
-#[must_use]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// How it ended.
-    pub status: Status,
-    /// Newton steps; 0 of an explicit integrator.
-    pub newton_iterations: usize,
-    /// Iterations of conjugate gradients.
-    pub linear_iterations: usize,
-    /// Factorisations.
-    pub factorisations: usize,
-    /// Largest imbalance of a node in the step's equation, N; 0 of an explicit integrator and of a linearised step.
-    pub imbalance: f64,
-    /// What was done beside plain Newton steps.
-    pub remedies: Remedies,
-}
 
 /// The memory of an integrator.
 enum Method<'a> {
@@ -187,22 +59,6 @@ pub struct Motion<'a> {
     start: f64,
     steps: usize,
     energies: Energies,
-}
-
-/// Where a cloth is and how it moves.
-#[derive(Debug, Clone)]
-struct State {
-    /// 3 a node, m.
-    positions: Vec<f64>,
-    /// 3 a node, m/s; zero where the cloth is held.
-    velocities: Vec<f64>,
-}
-
-/// What air and damping did in a step, J.
-#[derive(Debug, Clone, Copy, Default)]
-struct Work {
-    damping: f64,
-    wind: f64,
 }
 
 impl<'a> Motion<'a> {
@@ -367,31 +223,5 @@ impl<'a> Motion<'a> {
         };
         let Energies { damping, wind, .. } = self.energies;
         self.energies.numerical = self.start + wind - damping - self.energies.total();
-    }
-}
-
-impl Settings {
-    fn check(&self) -> Result<()> {
-        let positive = |field, value: f64| match value > 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => Err(Error::InvalidValue { field, value, expected: "a number above 0" }),
-        };
-        let not_negative = |field, value: f64| match value >= 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => Err(Error::InvalidValue { field, value, expected: "0 or more" }),
-        };
-        positive("step", self.step)?;
-        not_negative("damping.mass", self.damping.mass)?;
-        not_negative("damping.stiffness", self.damping.stiffness)?;
-        if let Integrator::ImplicitEuler { newton, linear } = self.integrator {
-            if let Newton::Converged { tolerance } = newton {
-                positive("newton.tolerance", tolerance)?;
-            }
-            if let LinearSolver::ConjugateGradient { tolerance, max_iterations } = linear {
-                positive("linear.tolerance", tolerance)?;
-                positive("linear.max_iterations", max_iterations as f64)?;
-            }
-        }
-        self.wind.map_or(Ok(()), |wind| wind.check())
     }
 }

@@ -6,7 +6,10 @@
 //!
 //! Its solution is where the incremental potential is least: see [`Increment`].
 
-use super::{LinearSolver, Newton, Settings, State, Status, Step, Work};
+use super::energy::Work;
+use super::settings::{LinearSolver, Newton, Settings};
+use super::state::State;
+use super::step::{Status, Step};
 use crate::cloth::Cloth;
 use crate::element::Curvature;
 use crate::equilibrium::{self, Solver, Tolerance};

@@ -1,6 +1,10 @@
 //! The classical Runge–Kutta method, and the longest step at which it is stable.
 
-use super::{Damping, Settings, State, Status, Step, Work};
+use super::damping::Damping;
+use super::energy::Work;
+use super::settings::Settings;
+use super::state::State;
+use super::step::{Status, Step};
 use crate::cloth::{Cloth, ForceScale};
 use crate::curve::{NegativeStrain, StiffnessCurve};
 use crate::element::Curvature;

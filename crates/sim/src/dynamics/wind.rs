@@ -1,6 +1,6 @@
 //! The air: wind, and the drag of cloth that moves through it.
 
-use super::State;
+use super::state::State;
 use crate::cloth::Cloth;
 use crate::element::gather;
 use crate::error::{Error, Result};
