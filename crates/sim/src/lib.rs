@@ -63,6 +63,9 @@
 //! # }
 //! ```
 
+/// The linear algebra that vectors and states come in.
+pub use nalgebra;
+
 pub mod bending;
 pub mod cloth;
 pub mod curve;
@@ -81,3 +84,8 @@ pub mod mesh;
 pub mod rigid;
 pub mod samples;
 mod sequence;
+
+/// The example there is run, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

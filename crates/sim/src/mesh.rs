@@ -178,6 +178,11 @@ impl Mesh {
         self.positions.is_empty()
     }
 
+    /// Where the vertices are at rest, 3 stacked coordinates each, m: the state that a solve starts from.
+    pub fn coordinates(&self) -> Vec<f64> {
+        self.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
+    }
+
     /// Twice the signed area of a triangle in material coordinates, m².
     pub fn double_area(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.triangles[triangle].map(|vertex| self.material[vertex]);

@@ -52,7 +52,7 @@ pub struct Sample {
 impl Sample {
     /// A sheet at rest, held nowhere, without weight, in space.
     pub fn at_rest(mesh: Mesh, model: Model, curves: Curves) -> Self {
-        let start = mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        let start = mesh.coordinates();
         Self {
             mesh,
             model,

@@ -224,18 +224,14 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
     };
     let curves: Curves = Component::ALL.into_iter().map(curve).collect();
     let cloth = Cloth::new(&Problem {
-        mesh: &mesh,
-        model: Model::Stvk,
-        components: &Component::ALL,
         areal_density: density,
         gravity: Vector3::new(0.0, 0.0, -samples::GRAVITY),
         held: &held,
         tied: if as_cylinder { free } else { &[] },
-        guided: &[],
-        planar: false,
+        ..Problem::new(&mesh, Model::Stvk, &Component::ALL)
     })
     .expect("a sheet that is held");
-    let mut x: Vec<f64> = mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+    let mut x = mesh.coordinates();
     let found = Solver::new(&cloth).solve(&curves, &mut x, &Settings::default());
     assert!(found.converged(), "{}", found.status);
     [24, 624].map(|corner| -x[3 * corner + 2])

@@ -32,6 +32,25 @@ pub struct Problem<'a> {
     pub planar: bool,
 }
 
+impl<'a> Problem<'a> {
+    /// A sheet in space without mass or weight, which nothing holds: the start of a problem that says what differs.
+    ///
+    /// * `components` — those that store energy; [`Component::ALL`] is right, too, where some have no curve
+    pub fn new(mesh: &'a Mesh, model: Model, components: &'a [Component]) -> Self {
+        Self {
+            mesh,
+            model,
+            components,
+            areal_density: 0.0,
+            gravity: Vector3::zeros(),
+            held: &[],
+            tied: &[],
+            guided: &[],
+            planar: false,
+        }
+    }
+}
+
 /// What makes a problem none.
 pub(super) fn check(problem: &Problem<'_>) -> Result<()> {
     let density = problem.areal_density;
