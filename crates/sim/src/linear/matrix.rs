@@ -69,7 +69,8 @@ impl Pattern {
             let range = self.lower.col_range(column);
             let factor = x[column];
             let mut sum = lower[range.start] * factor;
-            for (&row, &value) in rows[range.clone()].iter().zip(&lower[range]).skip(1) {
+            let below = range.start + 1..range.end;
+            for (&row, &value) in rows[below.clone()].iter().zip(&lower[below]) {
                 product[row] += value * factor;
                 sum += value * x[row];
             }
