@@ -11,10 +11,10 @@
 //! k γ²/8 an area, that of a continuum G γ²/2. So k = 4G.
 
 use cloth_fit::material::Material;
+use cloth_scene::scene::Scene;
+use cloth_scene::simulation::to_rest;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Model};
-use fit_cloth::scene::Scene;
-use fit_cloth::simulation::to_rest;
 use std::path::Path;
 
 /// Droop as a share of the sheet's height.

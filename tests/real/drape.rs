@@ -11,8 +11,9 @@
 //! fold: such a fabric is flagged, with both values.
 
 use cloth_fit::material::Material;
-use fit_cloth::scene::Scene;
-use fit_cloth::simulation::{Drape, Simulation, to_rest};
+use cloth_scene::drape::Drape;
+use cloth_scene::scene::Scene;
+use cloth_scene::simulation::{Simulation, to_rest};
 use fit_cloth_tests::rows;
 use std::path::Path;
 

@@ -20,9 +20,7 @@ mod study;
 mod view;
 mod writing;
 
-use crate::scene::Scene;
 use crate::shown::profiles;
-use crate::simulation::Simulation;
 use crate::study::Study;
 use chart::Drawn;
 use cloth_fit::error::{Error, Result};
@@ -31,6 +29,8 @@ use cloth_fit::incremental::FitReport;
 use cloth_fit::report::SequenceReport;
 use cloth_fit::store::write_file;
 use cloth_fit::validation::{Validated, Validation};
+use cloth_scene::scene::Scene;
+use cloth_scene::simulation::Simulation;
 use cloth_sim::material::Model;
 use plotters::style::RGBColor;
 use sheet::Sheet;

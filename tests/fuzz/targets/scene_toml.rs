@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use fit_cloth::scene::Scene;
+use cloth_scene::scene::Scene;
 use fit_cloth_fuzz::{Sample, answer};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;

@@ -6,8 +6,6 @@ use crate::options::{CompressionChoice, Telling, refuse_within};
 use crate::output::Output;
 use crate::plot::write_simulation_plots;
 use crate::progress::StepBar;
-use crate::scene::Scene;
-use crate::simulation::{self, Simulation};
 use crate::text;
 use clap::{Args, ValueEnum};
 use cloth_fit::check::{check_curves, refuse_unstable};
@@ -15,6 +13,9 @@ use cloth_fit::error::Error;
 use cloth_fit::io::ShapeFormat;
 use cloth_fit::material::Material;
 use cloth_fit::result::check_output;
+use cloth_scene::result::{simulation_json, write_simulation};
+use cloth_scene::scene::Scene;
+use cloth_scene::simulation::{Simulation, in_motion, to_rest};
 use cloth_sim::material::Curves;
 use std::io::Write;
 use std::path::PathBuf;
@@ -105,12 +106,12 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
     warn_of_defects(telling, &options.material.display().to_string(), &findings);
     let simulation = options.simulate(&scene, &material, telling)?;
     out.replace(|temporary| {
-        simulation::write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;
+        write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;
         write_simulation_plots(temporary, &scene, &simulation)
     })?;
     let text = text::simulation(&scene, &material, &simulation);
     let text = format!("{text}\nWritten to {}", folder.display());
-    tell(telling, output, &text, &simulation::simulation_json(&scene, &material, &simulation))?;
+    tell(telling, output, &text, &simulation_json(&scene, &material, &simulation))?;
     Ok(if simulation.converged() { Outcome::Done } else { Outcome::NotConverged })
 }
 
@@ -124,12 +125,12 @@ impl SimulateOptions {
     fn simulate(&self, scene: &Scene, material: &Material, telling: Telling) -> Result<Simulation, Error> {
         let bar = StepBar::new(&scene.name, !telling.quiet);
         let simulation = if self.rest {
-            simulation::to_rest(scene, material, &mut |step| bar.at(step, None))
+            to_rest(scene, material, &mut |step| bar.at(step, None))
         } else {
             let duration = self.duration.or(scene.duration).ok_or_else(|| {
                 scene.invalid("duration_s", "nothing", "a duration here or by --duration, or --rest")
             })?;
-            simulation::in_motion(scene, material, duration, &mut |step, steps| bar.at(step, Some(steps)))
+            in_motion(scene, material, duration, &mut |step, steps| bar.at(step, Some(steps)))
         };
         bar.finish();
         simulation

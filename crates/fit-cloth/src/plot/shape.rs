@@ -4,8 +4,8 @@ use super::chart::Drawn;
 use super::painter::Painter;
 use super::picture::{self, Picture};
 use super::view::View;
-use crate::scene::{Circle, Measure, Scene};
-use crate::simulation::{End, Frame, Simulation};
+use cloth_scene::scene::{Circle, Measure, Scene};
+use cloth_scene::simulation::{End, Frame, Simulation};
 use nalgebra::Vector3;
 
 /// Width of a panel, in pixels.

@@ -1,7 +1,7 @@
 //! From where a sheet is seen.
 
-use crate::scene::normal as normal_of;
 use cloth_fit::frame::Table;
+use cloth_scene::scene::normal as normal_of;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector2, Vector3};
 

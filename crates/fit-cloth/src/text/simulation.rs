@@ -1,9 +1,11 @@
 //! What came of a scene.
 
 use super::{interventions, list};
-use crate::scene::Scene;
-use crate::simulation::{Drape, Droop, End, Simulation};
 use cloth_fit::material::Material;
+use cloth_scene::drape::Drape;
+use cloth_scene::droop::Droop;
+use cloth_scene::scene::Scene;
+use cloth_scene::simulation::{End, Simulation};
 use cloth_sim::descent::Descent;
 use std::fmt::Write;
 

@@ -9,7 +9,7 @@ use cloth_fit::material::Material;
 use cloth_fit::material_file::MaterialFile;
 use cloth_fit::rig::KnownFabric;
 use cloth_fit::strip::{Direction, Extension, ForceTable, Measure, StripTest, read_force_table, read_strip};
-use fit_cloth::scene::Scene;
+use cloth_scene::scene::Scene;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::fs;

@@ -53,8 +53,8 @@ fn shape(place: Vector2<f64>) -> f64 {
     (0..WAVES).map(wave).sum::<f64>() / WAVES as f64
 }
 
-/// The mean normal of the sheet.
-pub(crate) fn normal(mesh: &Mesh) -> Vector3<f64> {
+/// The mean normal of a sheet, of unit length; along z where it has none.
+pub fn normal(mesh: &Mesh) -> Vector3<f64> {
     let cross = |[a, b, c]: &[usize; 3]| {
         let [a, b, c] = [a, b, c].map(|&node| mesh.positions[node]);
         (b - a).cross(&(c - a))

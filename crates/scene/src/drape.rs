@@ -75,7 +75,7 @@ pub fn drape(
 }
 
 /// Points as seen along a direction.
-pub(crate) fn seen_along(positions: &[Vector3<f64>], down: Vector3<f64>) -> Vec<Vector2<f64>> {
+fn seen_along(positions: &[Vector3<f64>], down: Vector3<f64>) -> Vec<Vector2<f64>> {
     let aside = if down.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
     let first = (aside - down * aside.dot(&down)).normalize();
     let second = first.cross(&down);
@@ -127,7 +127,7 @@ fn covered(mut spans: Vec<[f64; 2]>) -> f64 {
 }
 
 /// The nodes of the border, in order around a point of the sheet.
-pub(crate) fn rim(mesh: &Mesh, centre: Vector2<f64>) -> Vec<usize> {
+fn rim(mesh: &Mesh, centre: Vector2<f64>) -> Vec<usize> {
     let edges = mesh.edges().unwrap_or_default();
     let border = edges.iter().filter(|edge| edge.right.is_none());
     let mut nodes: Vec<usize> = border.flat_map(|edge| edge.ends).collect();

@@ -1,13 +1,7 @@
 //! A scene simulated: in motion, or straight to rest.
 
-mod drape;
-mod droop;
-mod result;
-
-pub use drape::{Drape, drape};
-pub use droop::{Droop, droop};
-pub use result::{simulation_json, write_simulation};
-
+use crate::drape::{Drape, drape};
+use crate::droop::{Droop, droop};
 use crate::scene::{Measure, Scene};
 use cloth_fit::error::Result;
 use cloth_fit::interventions::Interventions;

@@ -1,7 +1,7 @@
 //! The folder of a simulation: `simulation.json`, `mesh.obj`, its frames, `energies.csv`.
 
-use super::{End, Row, Simulation};
 use crate::scene::Scene;
+use crate::simulation::{End, Row, Simulation};
 use cloth_fit::error::Result;
 use cloth_fit::io::{ShapeFormat, write_shapes};
 use cloth_fit::material::Material;

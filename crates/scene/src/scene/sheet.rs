@@ -1,7 +1,7 @@
 //! The sheet of a scene, placed in space.
 
+use super::array::{check_length, vector};
 use super::file::{Axis, DiscFile, GridFile, MeshFile, SheetFile};
-use super::{check_length, vector};
 use cloth_fit::error::Result;
 use cloth_fit::io::{TomlFile, YarnAxes, read_mesh};
 use cloth_sim::mesh::{Disc, Grid, Mesh};

@@ -1,6 +1,7 @@
 //! Scenes: a sheet, what holds it, the air around it, and how its motion is computed. Nothing that a scene does not name is
 //! assembled.
 
+mod array;
 mod file;
 mod hold;
 mod motion;
@@ -11,8 +12,9 @@ mod tests;
 
 pub use file::Measure;
 pub use hold::Circle;
-pub(crate) use start::normal;
+pub use start::normal;
 
+use array::vector;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::io::TomlFile;
 use cloth_fit::material::Material;
@@ -168,21 +170,4 @@ impl Scene {
     pub fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         self.file.invalid(key, found, expected)
     }
-}
-
-/// Three finite numbers.
-fn vector(file: &TomlFile, key: &str, value: [f64; 3]) -> Result<Vector3<f64>> {
-    check_length(file, key, 3)?;
-    if value.iter().all(|component| component.is_finite()) {
-        return Ok(value.into());
-    }
-    Err(file.invalid(key, format!("{value:?}"), "three finite numbers"))
-}
-
-/// Refuses an array longer than what it is read as: the rest would be dropped in silence.
-fn check_length(file: &TomlFile, key: &str, length: usize) -> Result<()> {
-    if !file.has(&format!("{key}[{length}]")) {
-        return Ok(());
-    }
-    Err(file.invalid(key, format!("more than {length} numbers"), format!("an array of length {length}")))
 }

@@ -1,7 +1,7 @@
 //! What holds the sheet of a scene.
 
+use super::array::{pair, vector};
 use super::file::{BoxFile, CircleFile, Corner, EdgeName, FreeName, HoldFile};
-use super::{check_length, vector};
 use cloth_fit::error::Result;
 use cloth_fit::io::TomlFile;
 use cloth_sim::load::{Free, Guided, Held};
@@ -111,15 +111,6 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
             return Err(file.invalid(key, "none or several places", expected));
         }
     })
-}
-
-/// Two finite numbers.
-fn pair(file: &TomlFile, key: &str, value: [f64; 2]) -> Result<[f64; 2]> {
-    check_length(file, key, 2)?;
-    if value.iter().all(|number| number.is_finite()) {
-        return Ok(value);
-    }
-    Err(file.invalid(key, format!("{value:?}"), "two finite numbers"))
 }
 
 /// In which directions the nodes may still move; `None` if in none.

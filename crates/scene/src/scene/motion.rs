@@ -1,7 +1,7 @@
 //! How a scene's motion is computed.
 
+use super::array::vector;
 use super::file::{DampingFile, IntegratorName, LinearName, NewtonName, SolverFile, WindFile};
-use super::vector;
 use cloth_fit::error::Result;
 use cloth_fit::io::TomlFile;
 use cloth_sim::dynamics::{Damping, Integrator, LinearSolver, Newton, Settings, Wind};
