@@ -18,7 +18,6 @@ pub mod page;
 pub mod plot;
 pub mod progress;
 mod shown;
-pub mod study;
 pub mod subject;
 pub mod text;
 

@@ -21,7 +21,6 @@ mod view;
 mod writing;
 
 use crate::shown::profiles;
-use crate::study::Study;
 use chart::Drawn;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::{Kind, MeasurementSet};
@@ -32,6 +31,7 @@ use cloth_fit::validation::{Validated, Validation};
 use cloth_scene::scene::Scene;
 use cloth_scene::simulation::Simulation;
 use cloth_sim::material::Model;
+use cloth_study::study::Study;
 use plotters::style::RGBColor;
 use sheet::Sheet;
 use std::path::{Path, PathBuf};

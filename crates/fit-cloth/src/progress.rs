@@ -100,18 +100,18 @@ impl Progress {
         }
     }
 
-    /// What it counts with, for work that is no fit.
-    pub fn meter(&self) -> Arc<Meter> {
-        Arc::clone(&self.meter)
-    }
-
-    /// Says what is done now.
-    pub fn note(&self, what: &str) {
-        self.bar.set_message(format!(": {what}"));
-    }
-
     /// Removes the line.
     pub fn finish(self) {
         self.bar.finish_and_clear();
+    }
+}
+
+impl cloth_study::progress::Progress for Progress {
+    fn note(&self, what: &str) {
+        self.bar.set_message(format!(": {what}"));
+    }
+
+    fn meter(&self) -> Arc<Meter> {
+        Arc::clone(&self.meter)
     }
 }

@@ -17,7 +17,7 @@ pub use overall::{Overall, overall};
 pub use residuals::residuals;
 pub use simulation::simulation;
 pub use stage::{course, stage};
-pub use study::{study, study_page};
+pub use study::{Section, sections, study, study_page};
 pub use summary::{as_published, missing, summary, summary_rows};
 pub use validation::{other_grid, validation};
 pub use verdict::{verdict, verdict_of_fit};

@@ -3,11 +3,15 @@
 #![allow(clippy::unwrap_used)]
 
 use cloth_sim::material::Model;
+use cloth_study::extent::{Extent, Topic};
+use cloth_study::level::levels;
+use cloth_study::pareto::front;
+use cloth_study::run::{Ending, Part};
+use cloth_study::solver::Solver;
+use cloth_study::study::{Study, run};
+use cloth_study::subject::Subject;
+use cloth_study::table::{ablation_csv, study_csv, study_json};
 use fit_cloth::progress::Progress;
-use fit_cloth::study::{
-    Ending, Extent, Part, Solver, Study, Subject, Topic, ablation_csv, front, levels, run, sections,
-    study_csv, study_json,
-};
 use fit_cloth::text;
 
 fn smallest() -> Extent {
@@ -90,7 +94,7 @@ fn tables_hold_together(study: &Study) {
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     }
     assert_eq!(csv.matches(",true,").count(), study.runs.iter().filter(|run| run.failed()).count());
-    for section in sections(study) {
+    for section in text::sections(study) {
         assert!(section.rows.iter().all(|row| row.len() == section.header.len()), "{}", section.title);
     }
     let points: Vec<[f64; 2]> =

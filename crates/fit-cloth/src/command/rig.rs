@@ -10,6 +10,7 @@ use cloth_fit::error::Error;
 use cloth_fit::frame::Kind;
 use cloth_fit::io::{fill_set, read_fabric};
 use cloth_fit::rig::{KINDS, KnownFabric, Rig};
+use cloth_study::fabrics;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,14 +22,6 @@ Example:
   fit-cloth rig --fabric fixtures/fabrics/cotton-denim.toml --frames 40 --seed 7 --out sets/denim
 
 The set can be fitted at once: fit-cloth stretch sets/denim";
-
-/// The fabrics that come with the program.
-const KNOWN: [(&str, &str); 4] = [
-    ("cotton-denim", include_str!("../../../../fixtures/fabrics/cotton-denim.toml")),
-    ("cotton-satin", include_str!("../../../../fixtures/fabrics/cotton-satin.toml")),
-    ("rayon-spandex-knit", include_str!("../../../../fixtures/fabrics/rayon-spandex-knit.toml")),
-    ("wool-cotton", include_str!("../../../../fixtures/fabrics/wool-cotton.toml")),
-];
 
 /// `fit-cloth rig`.
 #[derive(Debug, Clone, Args)]
@@ -139,19 +132,13 @@ fn parse_test(name: &str) -> Result<Kind, String> {
     parse_kind(name, &KINDS)
 }
 
-/// The file of a fabric that comes with the program.
-pub(crate) fn known(name: &str) -> Option<&'static str> {
-    KNOWN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
-}
-
 fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {
-    if let Some(text) = known(name) {
+    if let Some(text) = fabrics::known(name) {
         return Ok(KnownFabric::parse(Path::new(name), text)?);
     }
     let path = Path::new(name);
     if !path.exists() {
-        let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
-        let expected = format!("a known fabric ({}) or a fabric file", names.join(", "));
+        let expected = format!("a known fabric ({}) or a fabric file", fabrics::names().join(", "));
         return Err(Error::input(path, None, "--fabric", "no such file", expected).into());
     }
     Ok(KnownFabric::read(path)?)

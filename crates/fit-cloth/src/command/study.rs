@@ -2,15 +2,18 @@
 
 use super::{Outcome, tell};
 use crate::failure::Failure;
-use crate::options::{SetFlags, Telling, use_threads};
+use crate::options::{SetFlags, Telling, TopicChoice, use_threads};
 use crate::output::Output;
 use crate::plot::write_study_plots;
 use crate::progress::Progress;
-use crate::study::{self, Extent, Study, Subject, Topic};
 use crate::text;
 use clap::Args;
 use cloth_fit::result::check_output;
 use cloth_fit::store::write_file;
+use cloth_study::extent::Extent;
+use cloth_study::study::{self, Study};
+use cloth_study::subject::Subject;
+use cloth_study::table::{ablation_csv, study_csv, study_json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -40,8 +43,8 @@ pub struct StudyOptions {
     #[arg(long)]
     pub as_published: bool,
     /// What to study [default: all]
-    #[arg(long, value_delimiter = ',', value_enum, hide_default_value = true, default_values_t = Topic::ALL)]
-    pub topics: Vec<Topic>,
+    #[arg(long, value_delimiter = ',', value_enum, hide_default_value = true, default_values_t = TopicChoice::ALL)]
+    pub topics: Vec<TopicChoice>,
     /// Threads [default: one a core]
     #[arg(long)]
     pub threads: Option<usize>,
@@ -57,7 +60,8 @@ pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) ->
         true => extent.fit_nodes.clone(),
         false => extent.published_nodes,
     };
-    let extent = Extent { topics: options.topics.clone(), published_nodes, ..extent };
+    let topics = options.topics.iter().map(|topic| (*topic).into()).collect();
+    let extent = Extent { topics, published_nodes, ..extent };
     let progress = Progress::new("study", !telling.quiet);
     let (subject, out) = options.subject(&extent)?;
     let study = study::run(&subject, &extent, &progress);
@@ -68,7 +72,7 @@ pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) ->
         write_study_plots(temporary, &study)
     })?;
     let text = format!("{}\nWritten to {}", text::study(&study), out.path().display());
-    tell(telling, output, &text, &study::study_json(&study))?;
+    tell(telling, output, &text, &study_json(&study))?;
     Ok(Outcome::Done)
 }
 
@@ -90,7 +94,7 @@ impl StudyOptions {
 }
 
 fn write(folder: &Path, study: &Study) -> cloth_fit::error::Result<()> {
-    write_file(&folder.join("study.csv"), study::study_csv(study).as_bytes())?;
-    write_file(&folder.join("ablation.csv"), study::ablation_csv(study).as_bytes())?;
+    write_file(&folder.join("study.csv"), study_csv(study).as_bytes())?;
+    write_file(&folder.join("ablation.csv"), ablation_csv(study).as_bytes())?;
     write_file(&folder.join("study.md"), text::study_page(study).as_bytes())
 }

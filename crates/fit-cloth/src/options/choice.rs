@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use cloth_fit::stage::{Constraints, Variant};
 use cloth_sim::material::{Compression, Model};
+use cloth_study::extent::Topic;
 
 /// One model, or all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -85,6 +86,35 @@ impl From<CompressionChoice> for Compression {
         match choice {
             CompressionChoice::ZeroStrain => Self::ZeroStrain,
             CompressionChoice::None => Self::None,
+        }
+    }
+}
+
+/// A topic of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TopicChoice {
+    /// Equilibria of scenes on finer and finer meshes
+    Equilibria,
+    /// Fits of the set
+    Fits,
+    /// Curve error against noise
+    Noise,
+    /// What parts save and cost; those of fits only with fits
+    Ablation,
+}
+
+impl TopicChoice {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Equilibria, Self::Fits, Self::Noise, Self::Ablation];
+}
+
+impl From<TopicChoice> for Topic {
+    fn from(choice: TopicChoice) -> Self {
+        match choice {
+            TopicChoice::Equilibria => Self::Equilibria,
+            TopicChoice::Fits => Self::Fits,
+            TopicChoice::Noise => Self::Noise,
+            TopicChoice::Ablation => Self::Ablation,
         }
     }
 }

@@ -9,8 +9,9 @@ mod stages;
 
 use super::chart::Drawn;
 use super::{BLUE, GREEN, GREY, PINK, VERMILLION};
-use crate::study::{Solver, Study};
 use cloth_sim::material::Model;
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
 use plotters::style::{Color, RGBColor, ShapeStyle};
 use std::ops::Range;
 

@@ -1,8 +1,21 @@
 //! A study: tables for the terminal, and the page `study.md`.
 
+mod digits;
+mod equilibria;
+mod fits;
+mod noise;
+mod parts;
+mod section;
+mod sections;
+
+pub use section::Section;
+pub use sections::sections;
+
 use super::{list, percent};
-use crate::study::{Ending, Part, Run, Solver, Study, sections};
 use cloth_sim::material::Model;
+use cloth_study::run::{Ending, Part, Run};
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
 use std::fmt::Write;
 
 /// All tables, and the verdict.

@@ -2,8 +2,10 @@
 
 use super::{BLUE, Drawn, GREEN, GREY, PINK, VERMILLION, decades};
 use crate::plot::chart::{Axes, log_figure};
-use crate::study::{Part, Run, Solver, Study};
 use cloth_sim::material::Model;
+use cloth_study::run::{Part, Run};
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
 use plotters::style::Color;
 
 const COLOURS: [plotters::style::RGBColor; 4] = [BLUE, VERMILLION, GREEN, PINK];

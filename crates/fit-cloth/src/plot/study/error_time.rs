@@ -3,8 +3,11 @@
 
 use super::{Drawn, decades, dot};
 use crate::plot::chart::{Axes, log_figure};
-use crate::study::{Part, Run, Solver, Study, front};
 use cloth_sim::material::Model;
+use cloth_study::pareto::front;
+use cloth_study::run::{Part, Run};
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
 use plotters::style::{BLACK, Color};
 
 /// Of the fits with all control points and frames.

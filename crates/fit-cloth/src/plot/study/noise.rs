@@ -2,7 +2,8 @@
 
 use super::{BLUE, Drawn, VERMILLION, decades};
 use crate::plot::chart::{Axes, log_figure};
-use crate::study::{Study, levels};
+use cloth_study::level::levels;
+use cloth_study::study::Study;
 use plotters::style::Color;
 
 /// # Errors

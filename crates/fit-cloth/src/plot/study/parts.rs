@@ -2,7 +2,9 @@
 
 use super::bars::{self, Bar};
 use super::{BLUE, Drawn, VERMILLION};
-use crate::study::{Ablated, Ending, Study};
+use cloth_study::ablation::Ablated;
+use cloth_study::run::Ending;
+use cloth_study::study::Study;
 
 /// # Errors
 /// Nothing was left out.

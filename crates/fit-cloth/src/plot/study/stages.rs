@@ -2,8 +2,10 @@
 
 use super::bars::{self, Bar};
 use super::{BLUE, Drawn, GREEN, PINK, VERMILLION};
-use crate::study::{Part, Solver, Study};
 use cloth_sim::material::Model;
+use cloth_study::run::Part;
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
 use plotters::style::RGBColor;
 
 /// A kind of stage, its colour, and which stages it is.

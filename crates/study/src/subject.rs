@@ -1,7 +1,7 @@
 //! What a study is about: a measurement set, and the truth behind it where that is known.
 
-use super::extent::Extent;
-use crate::command::rig::known;
+use crate::extent::Extent;
+use crate::fabrics::known;
 use cloth_fit::error::Result;
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::rig::{KnownFabric, Rig};

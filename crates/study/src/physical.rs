@@ -17,11 +17,11 @@ use cloth_sim::mesh::Mesh;
 
 /// Curves over the strains of a model with triangles, against which others are measured.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Reference {
+pub(crate) struct Reference {
     /// Whose strains: not those of springs.
-    pub(super) model: Model,
+    pub(crate) model: Model,
     /// The curves.
-    pub(super) curves: Curves,
+    pub(crate) curves: Curves,
 }
 
 /// How a model's membrane strain and stress are what is measured.
@@ -69,7 +69,7 @@ impl Measure {
 
 impl Reference {
     /// Force or moment per length at an extension, shear angle or curvature, N/m or N; `None` without a curve.
-    pub(super) fn load(&self, component: Component, place: f64) -> Option<f64> {
+    pub(crate) fn load(&self, component: Component, place: f64) -> Option<f64> {
         let curve = self.curves.get(component)?;
         Some(if component.is_bending() {
             curve.stress(HINGE_STRAIN_PER_CURVATURE * place)
@@ -80,7 +80,7 @@ impl Reference {
 
     /// Root mean square distance of a stage's curve over the range that it has seen, over the largest load there; `None`
     /// where there is nothing to compare it with.
-    pub(super) fn distance(&self, stage: &StageReport) -> Option<f64> {
+    pub(crate) fn distance(&self, stage: &StageReport) -> Option<f64> {
         distance(&loads(stage), |place| self.load(stage.components[0], place))
     }
 
@@ -89,7 +89,7 @@ impl Reference {
     ///
     /// # Errors
     /// Control points that make no curve.
-    pub(super) fn told_in(&self, model: Model, mesh: &Mesh) -> Result<Curves> {
+    pub(crate) fn told_in(&self, model: Model, mesh: &Mesh) -> Result<Curves> {
         let known = self.curves.components().filter_map(|c| Some((c, self.curves.get(c)?)));
         known
             .map(|(component, curve)| Ok((component, self.curve_in(model, mesh, component, curve)?)))
@@ -137,7 +137,7 @@ impl Reference {
 }
 
 /// Places and loads of a fitted curve, over the range that was seen.
-pub(super) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
+pub(crate) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
     let component = stage.components[0];
     let samples = stage.curve.samples.iter().filter(|sample| sample.strain >= 0.0);
     if component.is_bending() {
@@ -153,7 +153,7 @@ pub(super) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
 }
 
 /// Root mean square distance of loads from others at the same places, over the largest of these.
-pub(super) fn distance(loads: &[[f64; 2]], reference: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+pub(crate) fn distance(loads: &[[f64; 2]], reference: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let (mut sum, mut largest) = (0.0, 0.0f64);
     for &[place, load] in loads {
         let expected = reference(place)?;
@@ -164,7 +164,7 @@ pub(super) fn distance(loads: &[[f64; 2]], reference: impl Fn(f64) -> Option<f64
 }
 
 /// How far one stage's curve is from another's of the same component and model.
-pub(super) fn between(stage: &StageReport, other: &StageReport) -> Option<f64> {
+pub(crate) fn between(stage: &StageReport, other: &StageReport) -> Option<f64> {
     let others = loads(other);
     distance(&loads(stage), |place| Some(interpolated(&others, place)))
 }

@@ -1,13 +1,13 @@
 //! What parts of a fit save and cost.
 
-use super::{Ablated, damped};
+use super::ablated::Ablated;
+use crate::extent::Extent;
+use crate::fits::{Fitted, Trial, fit};
+use crate::physical::{Reference, between};
 use crate::progress::Progress;
-use crate::study::extent::Extent;
-use crate::study::fits::{Fitted, Trial, fit};
-use crate::study::physical::{Reference, between};
-use crate::study::run::root_mean_square;
-use crate::study::solver::Solver;
-use crate::study::subject::Subject;
+use crate::run::root_mean_square;
+use crate::solver::{Solver, damped};
+use crate::subject::Subject;
 use cloth_fit::refine::GrowthRule;
 use cloth_fit::replica::TableHold;
 use cloth_fit::report::StageReport;
@@ -31,12 +31,12 @@ const DIFFERENCES: [Published; 9] = [
 ];
 
 /// The parts of fits: control points, the second pass, and what differs from the published method.
-pub(in crate::study) fn of_fits(
+pub(crate) fn of_fits(
     subject: &Subject,
     reference: &Reference,
     fits: &[Fitted],
     extent: &Extent,
-    progress: &Progress,
+    progress: &dyn Progress,
 ) -> Vec<Ablated> {
     let usual = Trial::usual(extent.usual_nodes);
     let of_trial = |trial: Trial| fits.iter().find(|fit| fit.trial == trial);

@@ -1,7 +1,10 @@
 //! What each part saves and costs.
 
-use super::{Section, digits, header, percent, short};
-use crate::study::{Ablated, Ending, Study};
+use super::digits::{digits, percent, short};
+use super::section::{Section, header};
+use cloth_study::ablation::Ablated;
+use cloth_study::run::Ending;
+use cloth_study::study::Study;
 
 pub(super) fn parts(study: &Study) -> Section {
     let row = |row: &Ablated| {

@@ -1,62 +1,21 @@
-//! What each part that a scene can leave out saves, and which error it causes to leave it out.
-//!
-//! A scene is balanced with the part and without it, all frames of a test at the fabric's own curves. What concerns the fit
-//! rather than a scene is read off the fits of the study.
+//! What parts of a scene save and cost.
 
-mod of_fits;
-
-pub(super) use of_fits::of_fits;
-
-use super::extent::Extent;
-use super::physical::Reference;
-use super::run::{Ending, Spent};
-use super::scene::{Balanced, IN_SPACE, Scene, WEIGHT};
+use super::ablated::Ablated;
+use crate::extent::Extent;
+use crate::physical::Reference;
 use crate::progress::Progress;
+use crate::scene::{Balanced, IN_SPACE, Scene, WEIGHT};
+use crate::solver::damped;
 use cloth_fit::error::Result;
 use cloth_fit::frame::Kind;
 use cloth_fit::rig::{KnownFabric, Rig};
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
-use cloth_sim::equilibrium::{self, Method};
+use cloth_sim::equilibrium;
 use cloth_sim::material::Component;
 use nalgebra::Vector3;
 
 /// Scenes are balanced so often, and the fastest counts.
 const REPEATS: usize = 3;
-
-/// One row of `ablation.csv`: a part, with and without it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ablated {
-    /// What is left out.
-    pub part: String,
-    /// Where.
-    pub scene: String,
-    /// A fit has it by default.
-    pub by_default: bool,
-    /// Cost with it.
-    pub with: Spent,
-    /// Cost without it.
-    pub without: Spent,
-    /// What leaving it out changes: largest change of a force, over the largest force.
-    pub error_force: Option<f64>,
-    /// Root mean square change of the nodes' places, mm.
-    pub error_position_mm: Option<f64>,
-    /// Root mean square change of a curve over its range, over the largest stress there.
-    pub error_curve: Option<f64>,
-    /// How the runs ended, with and without.
-    pub ending: [Ending; 2],
-}
-
-impl Ablated {
-    /// Share of the time that leaving it out saves; below zero if that costs time.
-    pub fn saving(&self) -> f64 {
-        1.0 - self.without.seconds / self.with.seconds.max(f64::MIN_POSITIVE)
-    }
-
-    /// The largest relative error that it causes to leave it out: of forces or of a curve.
-    pub fn relative_error(&self) -> Option<f64> {
-        self.error_force.into_iter().chain(self.error_curve).reduce(f64::max)
-    }
-}
 
 /// A scene with a part, and the same without it.
 struct Pair {
@@ -70,7 +29,11 @@ struct Pair {
 ///
 /// # Errors
 /// A scene that the rig cannot make.
-pub(super) fn scenes(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Ablated>> {
+pub(crate) fn of_scenes(
+    fabric: &KnownFabric,
+    extent: &Extent,
+    progress: &dyn Progress,
+) -> Result<Vec<Ablated>> {
     let reference = Reference { model: fabric.model, curves: fabric.curves()? };
     let nodes = extent.usual_nodes;
     let rig = || Rig { nodes: [extent.rig_nodes; 2], measured: [25, 25], frames: 6, ..Rig::default() };
@@ -133,11 +96,6 @@ fn of_sheet(sheet: &Scene) -> Vec<Pair> {
         pair("weight", true, sheet.clone(), sheet.clone().with_gravity(Vector3::zeros())),
         solved("mixed Newton", sheet, damped()),
     ]
-}
-
-/// Levenberg–Marquardt instead, to the same tolerance.
-fn damped() -> equilibrium::Settings {
-    equilibrium::Settings { method: Method::LevenbergMarquardt, ..equilibrium::Settings::default() }
 }
 
 /// The same scene by other means.

@@ -1,7 +1,7 @@
 //! One run: what was tried, how far off it was, and what it has cost.
 
-use super::memory;
-use super::solver::Solver;
+use crate::memory;
+use crate::solver::Solver;
 use cloth_fit::simulation::{Counters, Meter};
 use cloth_sim::equilibrium::Tolerance;
 use cloth_sim::material::Model;
@@ -64,7 +64,7 @@ pub struct Spent {
 }
 
 /// Does something, and tells what it has cost.
-pub(super) fn spend<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, Spent) {
+pub(crate) fn spend<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, Spent) {
     memory::reset_peak();
     let before = meter.read();
     let clock = Instant::now();
@@ -115,7 +115,7 @@ pub struct Run {
 
 impl Run {
     /// A run that has cost nothing yet.
-    pub(super) fn new(part: Part, test: &str, model: Model, solver: Solver, nodes: usize) -> Self {
+    pub(crate) fn new(part: Part, test: &str, model: Model, solver: Solver, nodes: usize) -> Self {
         Self {
             part,
             test: test.into(),
@@ -144,7 +144,7 @@ impl Run {
 }
 
 /// The root of the mean of squares; `None` of nothing.
-pub(super) fn root_mean_square(values: impl Iterator<Item = f64>) -> Option<f64> {
+pub(crate) fn root_mean_square(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
     (count > 0.0).then(|| (sum / count).sqrt())
 }

@@ -1,11 +1,12 @@
 //! Error against noise.
 
-use super::{Section, digits, header, percent};
-use crate::study::Study;
-use crate::study::levels;
+use super::digits::{digits, percent};
+use super::section::{Section, header};
+use cloth_study::level::{Level, levels};
+use cloth_study::study::Study;
 
 pub(super) fn noise(study: &Study) -> Section {
-    let row = |level: &crate::study::Level| {
+    let row = |level: &Level| {
         vec![
             level.test.clone(),
             level.noise.to_string(),

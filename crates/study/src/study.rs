@@ -1,42 +1,12 @@
-//! Error against run time, and what each part that a scene can leave out saves and costs.
-//!
-//! ```text
-//! known fabric ──▶ scenes on finer and finer meshes ──▶ error and cost of an equilibrium      [equilibria]
-//! measured set ──▶ fits: nodes, models, solvers, points, frames ──▶ error and cost of a fit   [fits]
-//! known fabric ──▶ more and more noise ──▶ error of a curve beside the least there can be     [noise]
-//!              ──▶ scenes with and without a part ──▶ what it saves, what it costs            [ablation]
-//! ```
-//!
-//! Runs are timed one at a time; within a run frames are solved in parallel, as in a fit. A run that fails is a row that
-//! says so.
+//! A whole study: how it is run, and all that it has found.
 
-mod ablation;
-mod equilibria;
-mod extent;
-mod fits;
-mod memory;
-mod noise;
-mod own_mesh;
-mod page;
-mod pareto;
-mod physical;
-mod run;
-mod scene;
-mod solver;
-mod subject;
-mod table;
-
-pub use ablation::Ablated;
-pub use extent::{Extent, Topic};
-pub use noise::{Level, levels};
-pub use page::{Section, sections};
-pub use pareto::front;
-pub use run::{Ending, Part, Run, Spent};
-pub use solver::Solver;
-pub use subject::Subject;
-pub use table::{ablation_csv, markdown, study_csv, study_json};
-
+use crate::ablation::{self, Ablated};
+use crate::extent::{Extent, Topic};
 use crate::progress::Progress;
+use crate::run::{Part, Run};
+use crate::solver::Solver;
+use crate::subject::Subject;
+use crate::{equilibria, fits, noise};
 use cloth_fit::error::Result;
 
 /// All that a study has found.
@@ -71,7 +41,7 @@ impl Study {
 ///
 /// # Errors
 /// A set that not even the reference fit can be made of; scenes that the rig cannot make.
-pub fn run(subject: &Subject, extent: &Extent, progress: &Progress) -> Result<Study> {
+pub fn run(subject: &Subject, extent: &Extent, progress: &dyn Progress) -> Result<Study> {
     let fabric = &subject.fabric;
     let (mut runs, mut ablation, mut told) = (Vec::new(), Vec::new(), String::new());
     if extent.has(Topic::Equilibria) {
@@ -81,7 +51,7 @@ pub fn run(subject: &Subject, extent: &Extent, progress: &Progress) -> Result<St
         runs.extend(noise::runs(fabric, extent, progress)?);
     }
     if extent.has(Topic::Ablation) {
-        ablation.extend(ablation::scenes(fabric, extent, progress)?);
+        ablation.extend(ablation::of_scenes(fabric, extent, progress)?);
     }
     if extent.has(Topic::Fits) {
         let reference;

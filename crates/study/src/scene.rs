@@ -1,8 +1,8 @@
 //! A scene: one test of a known fabric, simulated as a fit simulates it, with or without some of its parts.
 
-use super::memory;
-use super::physical::Reference;
-use super::run::{Ending, Spent};
+use crate::memory;
+use crate::physical::Reference;
+use crate::run::{Ending, Spent};
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::replica::{Replica, ReplicaFrame};
@@ -16,39 +16,39 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// Standard gravity across the sheet, m/s².
-pub(super) const WEIGHT: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
+pub(crate) const WEIGHT: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
 
 /// So little gravity that nothing feels it, but the replica moves in space, m/s².
-pub(super) const IN_SPACE: Vector3<f64> = Vector3::new(0.0, 0.0, -1e-9);
+pub(crate) const IN_SPACE: Vector3<f64> = Vector3::new(0.0, 0.0, -1e-9);
 
 /// A test and the parts that take part in it.
 #[derive(Debug, Clone)]
-pub(super) struct Scene {
+pub(crate) struct Scene {
     /// What it is called.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// The set that it is the only sequence of: how the sheet is held in every frame.
-    pub(super) set: MeasurementSet,
+    pub(crate) set: MeasurementSet,
     /// Which components store energy, and whether the sheet stays in its plane.
-    pub(super) plan: Plan,
+    pub(crate) plan: Plan,
 }
 
 /// A scene's frames in equilibrium, each solved once from where it starts, without what a fit falls back on.
-pub(super) struct Balanced {
+pub(crate) struct Balanced {
     /// The frames that have an equilibrium.
-    pub(super) frames: Vec<BalancedFrame>,
-    pub(super) replica: Replica,
-    pub(super) spent: Spent,
-    pub(super) ending: Ending,
+    pub(crate) frames: Vec<BalancedFrame>,
+    pub(crate) replica: Replica,
+    pub(crate) spent: Spent,
+    pub(crate) ending: Ending,
 }
 
 /// One frame in equilibrium.
-pub(super) struct BalancedFrame {
+pub(crate) struct BalancedFrame {
     /// Its place among the replica's frames.
-    pub(super) place: usize,
+    pub(crate) place: usize,
     /// Simulated forces along the measured components, N.
-    pub(super) forces: Vec<f64>,
+    pub(crate) forces: Vec<f64>,
     /// Places of the nodes, 3 stacked coordinates a node, m.
-    pub(super) x: Vec<f64>,
+    pub(crate) x: Vec<f64>,
 }
 
 impl Scene {
@@ -58,7 +58,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Rig::measure`].
-    pub(super) fn new(fabric: &KnownFabric, kind: Kind, rig: Rig, plan: Plan) -> Result<Self> {
+    pub(crate) fn new(fabric: &KnownFabric, kind: Kind, rig: Rig, plan: Plan) -> Result<Self> {
         let rig = Rig { sequences: vec![kind], noise: false, ..rig };
         let mut plan = plan;
         plan.kinds = vec![kind];
@@ -66,20 +66,20 @@ impl Scene {
     }
 
     /// The same with another gravity, m/s².
-    pub(super) fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
+    pub(crate) fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
         self.set.sequences.iter_mut().for_each(|sequence| sequence.gravity = gravity);
         self
     }
 
     /// The same without its measured shapes, so that it starts between its clips.
-    pub(super) fn without_shapes(mut self) -> Self {
+    pub(crate) fn without_shapes(mut self) -> Self {
         let frames = self.set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames);
         frames.for_each(|frame| frame.positions = None);
         self
     }
 
     /// The same under another name.
-    pub(super) fn called(mut self, name: &str) -> Self {
+    pub(crate) fn called(mut self, name: &str) -> Self {
         self.name = name.into();
         self
     }
@@ -88,7 +88,7 @@ impl Scene {
     ///
     /// # Errors
     /// A replica that cannot be made.
-    pub(super) fn balance(&self, reference: &Reference, settings: &Settings) -> Result<Balanced> {
+    pub(crate) fn balance(&self, reference: &Reference, settings: &Settings) -> Result<Balanced> {
         let mut plan = self.plan.clone();
         plan.components.retain(|&component| reference.curves.get(component).is_some());
         let mut replicas = plan.replicas(&self.set, settings)?;
@@ -149,7 +149,7 @@ fn ending(found: &[Equilibrium]) -> Ending {
 
 impl Balanced {
     /// Places of the nodes that a coarser square grid has too, all frames after one another, m.
-    pub(super) fn shared(&self, nodes: usize) -> Vec<f64> {
+    pub(crate) fn shared(&self, nodes: usize) -> Vec<f64> {
         let grid: &Grid = &self.replica.specimen.grid;
         let [right, up] = [grid.columns, grid.rows].map(|all| (all - 1) / (nodes - 1));
         let mut places = Vec::new();
@@ -163,7 +163,7 @@ impl Balanced {
     }
 
     /// Index of a frame in its sequence.
-    pub(super) fn index(&self, frame: &BalancedFrame) -> usize {
+    pub(crate) fn index(&self, frame: &BalancedFrame) -> usize {
         self.replica.frames[frame.place].index
     }
 
@@ -176,7 +176,7 @@ impl Balanced {
 
     /// Largest difference of a force over the largest force of the other, over the frames that both have; `None` without
     /// forces.
-    pub(super) fn force_error(&self, other: &Self) -> Option<f64> {
+    pub(crate) fn force_error(&self, other: &Self) -> Option<f64> {
         let (mut apart, mut largest) = (0.0f64, 0.0f64);
         for frame in &other.frames {
             let own = self.frames.iter().find(|own| self.index(own) == other.index(frame));
@@ -190,7 +190,7 @@ impl Balanced {
     }
 
     /// Root mean square distance of the nodes of a coarser grid, mm; `None` where the frames differ.
-    pub(super) fn position_error_mm(&self, other: &Self, nodes: usize) -> Option<f64> {
+    pub(crate) fn position_error_mm(&self, other: &Self, nodes: usize) -> Option<f64> {
         let indices = |balanced: &Self| -> Vec<usize> {
             balanced.frames.iter().map(|frame| balanced.index(frame)).collect()
         };
@@ -200,7 +200,7 @@ impl Balanced {
 }
 
 /// Of points in space, 3 stacked coordinates each.
-pub(super) fn root_mean_square_distance(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn root_mean_square_distance(a: &[f64], b: &[f64]) -> f64 {
     let sum: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
     (3.0 * sum / a.len().max(1) as f64).sqrt()
 }

@@ -9,12 +9,12 @@
 //! bars in shear    ▌  ▐          two bars moved along each other, in the plane: the corners are singular
 //! ```
 
-use super::extent::Extent;
-use super::physical::Reference;
-use super::run::{Part, Run};
-use super::scene::{Balanced, Scene, WEIGHT, root_mean_square_distance};
-use super::solver::Solver;
+use crate::extent::Extent;
+use crate::physical::Reference;
 use crate::progress::Progress;
+use crate::run::{Part, Run};
+use crate::scene::{Balanced, Scene, WEIGHT, root_mean_square_distance};
+use crate::solver::Solver;
 use cloth_fit::error::Result;
 use cloth_fit::frame::Kind;
 use cloth_fit::rig::{KnownFabric, Rig};
@@ -42,7 +42,7 @@ const TOLERANCES: [Tolerance; 5] = [
 ///
 /// # Errors
 /// A scene that the rig cannot make; a reference mesh that no scene can be laid on.
-pub(super) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Run>> {
+pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progress) -> Result<Vec<Run>> {
     let reference = Reference { model: fabric.model, curves: fabric.curves()? };
     let mut runs = Vec::new();
     for scene in scenes(fabric, extent)? {
@@ -114,7 +114,7 @@ struct Ladder<'a> {
 }
 
 impl Ladder<'_> {
-    fn meshes(&self, extent: &Extent, progress: &Progress) -> Result<Vec<Run>> {
+    fn meshes(&self, extent: &Extent, progress: &dyn Progress) -> Result<Vec<Run>> {
         let mut runs = Vec::new();
         let coarsest = extent.meshes[0];
         for solver in Solver::ALL {

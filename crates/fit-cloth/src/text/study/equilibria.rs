@@ -1,8 +1,12 @@
 //! Equilibria: meshes, and tolerances.
 
-use super::{Section, digits, header, short};
-use crate::study::{Part, Run, Solver, Study, table};
+use super::digits::{digits, percent, short};
+use super::section::{Section, header};
 use cloth_sim::material::Model;
+use cloth_study::run::{Ending, Part, Run};
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
+use cloth_study::table;
 
 /// The equilibria with the usual tolerance of their solver.
 fn usual(study: &Study) -> impl Iterator<Item = &Run> {
@@ -41,10 +45,10 @@ pub(super) fn meshes(study: &Study) -> Section {
             Some(run) => format!("{} s, {}", digits(run.spent.seconds), run.spent.counters.factorisations),
             None => "-".into(),
         };
-        let several = orders.iter().any(|run| !run.failed() && run.ending != crate::study::Ending::Converged);
+        let several = orders.iter().any(|run| !run.failed() && run.ending != Ending::Converged);
         let mut cells = vec![test.to_string(), model.to_string(), short(order)];
         cells.extend(meshes.iter().map(|&nodes| short(default(nodes).and_then(|run| run.error_position_mm))));
-        cells.push(super::percent(default(largest).and_then(|run| run.error_force)));
+        cells.push(percent(default(largest).and_then(|run| run.error_force)));
         cells.extend([cost(default(largest)), cost(run(Solver::AsPublished, largest))]);
         cells.push(if several { "yes" } else { "no" }.into());
         cells

@@ -1,7 +1,7 @@
 //! Tests as a fit itself simulates them: under known curves, on the fit's own mesh, before noise is added.
 
-use super::physical::Reference;
-use super::scene::{Balanced, BalancedFrame, Scene};
+use crate::physical::Reference;
+use crate::scene::{Balanced, BalancedFrame, Scene};
 use cloth_fit::error::Result;
 use cloth_fit::frame::{Cord, MeasurementSet};
 use cloth_fit::stage::Settings;
@@ -11,7 +11,7 @@ use nalgebra::{Point3, Vector3};
 ///
 /// # Errors
 /// As [`Scene::balance`].
-pub(super) fn simulated(scene: &Scene, reference: &Reference, settings: &Settings) -> Result<MeasurementSet> {
+pub(crate) fn simulated(scene: &Scene, reference: &Reference, settings: &Settings) -> Result<MeasurementSet> {
     let balanced = scene.balance(reference, settings)?;
     let mut set = scene.set.clone();
     for sequence in &mut set.sequences {

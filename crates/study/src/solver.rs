@@ -38,3 +38,11 @@ impl std::fmt::Display for Solver {
         })
     }
 }
+
+/// Levenberg–Marquardt instead of mixed Newton, to the same tolerance.
+pub(crate) fn damped() -> equilibrium::Settings {
+    equilibrium::Settings {
+        method: equilibrium::Method::LevenbergMarquardt,
+        ..equilibrium::Settings::default()
+    }
+}

@@ -1,8 +1,12 @@
 //! Fits, and where their time goes.
 
-use super::{Section, digits, header, percent, short};
-use crate::study::{Part, Run, Solver, Study, front};
+use super::digits::{digits, percent, short};
+use super::section::{Section, header};
 use cloth_sim::material::Model;
+use cloth_study::pareto::front;
+use cloth_study::run::{Part, Run};
+use cloth_study::solver::Solver;
+use cloth_study::study::Study;
 
 pub(super) fn fits(study: &Study) -> Section {
     let done: Vec<[f64; 2]> = study.part(Part::Fit).filter_map(point).collect();

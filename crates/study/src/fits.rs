@@ -1,11 +1,11 @@
 //! Fits of the set: nodes, models and solvers each with each; control points and frames one at a time.
 
-use super::extent::Extent;
-use super::physical::Reference;
-use super::run::{Ending, Part, Run, Spent, root_mean_square, spend};
-use super::solver::Solver;
-use super::subject::Subject;
+use crate::extent::Extent;
+use crate::physical::Reference;
 use crate::progress::Progress;
+use crate::run::{Ending, Part, Run, Spent, root_mean_square, spend};
+use crate::solver::Solver;
+use crate::subject::Subject;
 use cloth_fit::error::Result;
 use cloth_fit::frame::MeasurementSet;
 use cloth_fit::incremental::{self, FitReport, Stage};
@@ -19,22 +19,22 @@ const POINTS: usize = 5;
 
 /// What one fit is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Trial {
-    pub(super) model: Model,
-    pub(super) solver: Solver,
-    pub(super) nodes: usize,
-    pub(super) points: usize,
+pub(crate) struct Trial {
+    pub(crate) model: Model,
+    pub(crate) solver: Solver,
+    pub(crate) nodes: usize,
+    pub(crate) points: usize,
     /// Every which frame is used.
-    pub(super) every: usize,
+    pub(crate) every: usize,
 }
 
 impl Trial {
     /// StVK by the program's own settings.
-    pub(super) fn usual(nodes: usize) -> Self {
+    pub(crate) fn usual(nodes: usize) -> Self {
         Self { model: Model::Stvk, solver: Solver::Default, nodes, points: POINTS, every: 1 }
     }
 
-    pub(super) fn settings(&self) -> Settings {
+    pub(crate) fn settings(&self) -> Settings {
         let settings = Settings {
             model: self.model,
             nodes: Some([self.nodes; 2]),
@@ -46,20 +46,20 @@ impl Trial {
 }
 
 /// A fit, and its rows: the whole first, then its stages.
-pub(super) struct Fitted {
-    pub(super) trial: Trial,
-    pub(super) rows: Vec<Run>,
-    pub(super) report: Option<FitReport>,
+pub(crate) struct Fitted {
+    pub(crate) trial: Trial,
+    pub(crate) rows: Vec<Run>,
+    pub(crate) report: Option<FitReport>,
 }
 
 /// What curve errors are measured against, and that in words: the truth, or the default fit on the finest grid.
 ///
 /// # Errors
 /// A set that cannot be fitted; curves of a fabric that are none.
-pub(super) fn reference(
+pub(crate) fn reference(
     subject: &Subject,
     extent: &Extent,
-    progress: &Progress,
+    progress: &dyn Progress,
 ) -> Result<(Reference, String)> {
     let fabric = &subject.fabric;
     if subject.is_known {
@@ -76,11 +76,11 @@ pub(super) fn reference(
 }
 
 /// All fits of a study.
-pub(super) fn runs(
+pub(crate) fn runs(
     subject: &Subject,
     reference: &Reference,
     extent: &Extent,
-    progress: &Progress,
+    progress: &dyn Progress,
 ) -> Vec<Fitted> {
     let mut trials = Vec::new();
     for &model in &extent.models {
@@ -102,12 +102,12 @@ pub(super) fn runs(
 /// One fit.
 ///
 /// * `settings` — those of the trial, or some of them changed
-pub(super) fn fit(
+pub(crate) fn fit(
     set: &MeasurementSet,
     reference: &Reference,
     trial: Trial,
     settings: &Settings,
-    progress: &Progress,
+    progress: &dyn Progress,
 ) -> Fitted {
     let Trial { model, solver, nodes, points, every } = trial;
     progress.note(&format!("fit, {model}, {solver}: {nodes}x{nodes}, {points} points, 1 of {every} frames"));

@@ -1,18 +1,17 @@
 //! How much a study runs.
 
-use clap::ValueEnum;
 use cloth_sim::material::Model;
 
 /// A topic of a study.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topic {
-    /// Equilibria of scenes on finer and finer meshes
+    /// Equilibria of scenes on finer and finer meshes.
     Equilibria,
-    /// Fits of the set
+    /// Fits of the set.
     Fits,
-    /// Curve error against noise
+    /// Curve error against noise.
     Noise,
-    /// What parts save and cost; those of fits only with fits
+    /// What parts save and cost; those of fits only with fits.
     Ablation,
 }
 

@@ -9,14 +9,13 @@
 //! The floor is that of the noise alone, at the true curve. All control points are in use, so that bias and variance are
 //! not mixed.
 
-use super::Study;
-use super::extent::Extent;
-use super::own_mesh;
-use super::physical::{Reference, distance, loads};
-use super::run::{Ending, Part, Run, root_mean_square, spend};
-use super::scene::Scene;
-use super::solver::Solver;
+use crate::extent::Extent;
+use crate::own_mesh;
+use crate::physical::{Reference, distance, loads};
 use crate::progress::Progress;
+use crate::run::{Ending, Part, Run, spend};
+use crate::scene::Scene;
+use crate::solver::Solver;
 use cloth_fit::error::Result;
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::knowledge::Knowledge;
@@ -31,42 +30,6 @@ const BAND: f64 = 1.959_963_985;
 
 /// The share that more control points must gain: less than none, so that all are used.
 const ALWAYS: f64 = -1e6;
-
-/// All seeds of one noise together.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Level {
-    /// Curve and mesh.
-    pub test: String,
-    /// Multiple of the instruments' noise.
-    pub noise: f64,
-    /// Seeds whose fits converged.
-    pub seeds: usize,
-    /// Seeds whose fits did not.
-    pub failed: usize,
-    /// Root mean square of their curve errors.
-    pub error: f64,
-    /// The Cramér–Rao bound.
-    pub floor: Option<f64>,
-}
-
-/// The fits to noise, averaged over seeds.
-pub fn levels(study: &Study) -> Vec<Level> {
-    let mut levels: Vec<Level> = Vec::new();
-    let runs: Vec<&Run> = study.part(Part::Noise).collect();
-    for group in runs.chunk_by(|a, b| a.test == b.test && a.noise == b.noise) {
-        let done = group.iter().filter(|run| !run.failed() && run.error_curve.is_some());
-        let seeds = done.clone().count();
-        levels.extend(root_mean_square(done.filter_map(|run| run.error_curve)).map(|error| Level {
-            test: group[0].test.clone(),
-            noise: group[0].noise.unwrap_or(0.0),
-            seeds,
-            failed: group.len() - seeds,
-            error,
-            floor: group[0].floor,
-        }));
-    }
-    levels
-}
 
 /// One stage of a fit, its scene, and what it compares its curve with.
 struct Stage {
@@ -86,7 +49,7 @@ const LARGEST_IN_BENDING: f64 = 10.0;
 ///
 /// # Errors
 /// A scene that the rig cannot make, or a stage that fails without noise.
-pub(super) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &Progress) -> Result<Vec<Run>> {
+pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progress) -> Result<Vec<Run>> {
     let mut runs = Vec::new();
     for (component, points) in [(Component::StretchWeft, 5), (Component::BendWeft, 2)] {
         let mut stage = Stage::new(fabric, component, points, extent)?;
@@ -170,7 +133,7 @@ impl Stage {
         exact: &MeasurementSet,
         floor: Option<f64>,
         extent: &Extent,
-        progress: &Progress,
+        progress: &dyn Progress,
     ) -> Vec<Run> {
         let name = format!("{component}, {mesh}");
         // Every noise has seeds of its own: the same draws, only larger, would err alike.
@@ -193,7 +156,7 @@ impl Stage {
             .collect()
     }
 
-    fn run(&self, name: &str, component: Component, set: &MeasurementSet, progress: &Progress) -> Run {
+    fn run(&self, name: &str, component: Component, set: &MeasurementSet, progress: &dyn Progress) -> Run {
         let nodes = self.settings.nodes.map_or(0, |[columns, _]| columns);
         let mut run = Run::new(Part::Noise, name, self.settings.model, Solver::Default, nodes);
         let mut known = self.known.clone();

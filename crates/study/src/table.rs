@@ -1,6 +1,8 @@
 //! `study.csv`, `ablation.csv`, and what `--json` prints.
 
-use super::{Ablated, Run, Spent, Study};
+use crate::ablation::Ablated;
+use crate::run::{Run, Spent};
+use crate::study::Study;
 use cloth_sim::equilibrium::Tolerance;
 use serde_json::{Map, Value, json};
 
@@ -89,33 +91,12 @@ fn ablation_cells(row: &Ablated) -> Vec<String> {
     ]
 }
 
-/// As `relative 1e-6`, or `absolute 1e-5 N`.
-pub(super) fn tolerance(tolerance: Tolerance) -> String {
+/// A tolerance as the tables have it: `relative 1e-6`, or `absolute 1e-5 N`.
+pub fn tolerance(tolerance: Tolerance) -> String {
     match tolerance {
         Tolerance::Relative(share) => format!("relative {share:e}"),
         Tolerance::Absolute(force) => format!("absolute {force:e} N"),
     }
-}
-
-/// Rows of cells as a Markdown table, padded so that it reads well as it stands; numbers stand on the right.
-pub fn markdown(header: &[&str], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        let cells = rows.iter().map(|row| row[column].chars().count());
-        cells.chain([header[column].chars().count(), 3]).max().unwrap_or(3)
-    };
-    let widths: Vec<usize> = (0..header.len()).map(width).collect();
-    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let pad = |column: usize, cell: &str| match column {
-        0 => format!("{cell:0$}", widths[column]),
-        _ => format!("{cell:>0$}", widths[column]),
-    };
-    let padded = |cells: Vec<&str>| line(cells.iter().enumerate().map(|(i, cell)| pad(i, cell)).collect());
-    let rule = widths.iter().enumerate().map(|(column, &width)| match column {
-        0 => "-".repeat(width),
-        _ => "-".repeat(width - 1) + ":",
-    });
-    let body = rows.iter().map(|row| padded(row.iter().map(String::as_str).collect()));
-    std::iter::once(padded(header.to_vec())).chain([line(rule.collect())]).chain(body).collect()
 }
 
 fn text(value: &str) -> String {

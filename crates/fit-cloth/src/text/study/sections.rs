@@ -1,0 +1,18 @@
+//! A study in tables with a sentence each.
+
+use super::section::Section;
+use super::{equilibria, fits, noise, parts};
+use cloth_study::study::Study;
+
+/// All sections, in order; what was not run has none.
+pub fn sections(study: &Study) -> Vec<Section> {
+    let all = [
+        equilibria::meshes(study),
+        equilibria::tolerances(study),
+        fits::fits(study),
+        fits::stages(study),
+        noise::noise(study),
+        parts::parts(study),
+    ];
+    all.into_iter().filter(|section| !section.rows.is_empty()).collect()
+}
