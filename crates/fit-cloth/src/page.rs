@@ -6,8 +6,10 @@ mod curves;
 mod fit;
 mod sequences;
 
-pub use fit::{Fit, Frames};
+pub use fit::Fit;
+pub use sequences::Frames;
 
+use crate::text::Ranking;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::io::read_json;
 use cloth_fit::store::{refuse_link, write_file};
@@ -47,20 +49,6 @@ pub struct Page {
     fits: Vec<Fit>,
     /// Which of them is best, if they were compared.
     ranking: Option<Ranking>,
-}
-
-/// A comparison in words and cells.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Ranking {
-    /// What ranks, in words.
-    pub by: String,
-    /// What no row tells: curves and predictions that are missing.
-    pub notes: Vec<String>,
-    /// Names of the columns.
-    pub columns: Vec<String>,
-    /// Best first.
-    pub rows: Vec<Vec<String>>,
 }
 
 impl Page {

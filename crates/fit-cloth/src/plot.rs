@@ -4,10 +4,12 @@ mod chart;
 mod convergence;
 mod correlation;
 mod cycle;
-pub(crate) mod forces;
+mod drawing;
+mod forces;
 mod measure;
 mod painter;
 mod pair;
+mod palette;
 mod picture;
 mod profiles;
 mod residual_field;
@@ -21,9 +23,8 @@ mod view;
 mod writing;
 
 use crate::shown::profiles;
-use chart::Drawn;
 use cloth_fit::error::{Error, Result};
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_fit::frame::MeasurementSet;
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::SequenceReport;
 use cloth_fit::store::write_file;
@@ -32,22 +33,8 @@ use cloth_scene::scene::Scene;
 use cloth_scene::simulation::Simulation;
 use cloth_sim::material::Model;
 use cloth_study::study::Study;
-use plotters::style::RGBColor;
-use sheet::Sheet;
+use drawing::Drawn;
 use std::path::{Path, PathBuf};
-
-// Okabe and Ito 2008: told apart by those who see red and green alike, too.
-const BLUE: RGBColor = RGBColor(0, 114, 178);
-const VERMILLION: RGBColor = RGBColor(213, 94, 0);
-const GREEN: RGBColor = RGBColor(0, 158, 115);
-const PINK: RGBColor = RGBColor(204, 121, 167);
-const ORANGE: RGBColor = RGBColor(230, 159, 0);
-const SKY: RGBColor = RGBColor(86, 180, 233);
-const GREY: RGBColor = RGBColor(110, 110, 110);
-
-/// What was simulated, and what was measured, in every figure.
-const MODEL: RGBColor = BLUE;
-const MEASURED: RGBColor = VERMILLION;
 
 /// Writes a fit's figures into a result folder: every observed curve, every test, and how the fit went.
 ///
@@ -147,25 +134,4 @@ impl Plots {
         }
         Ok(())
     }
-}
-
-/// What a test's extension is, for an axis.
-pub(crate) fn extension(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Shear | Kind::ComplexShear => "effective shear angle [rad]",
-        Kind::BendWeft | Kind::BendWarp | Kind::BendBias => "overhang [m]",
-        _ => "extension [–]",
-    }
-}
-
-/// A title with the frame that is shown.
-fn frame_title(title: &str, kind: Kind, sheet: &Sheet) -> String {
-    let extension = match kind {
-        Kind::Shear | Kind::ComplexShear => format!("shear angle {:.3} rad", sheet.extension),
-        Kind::BendWeft | Kind::BendWarp | Kind::BendBias => {
-            format!("overhang {:.1} mm", 1e3 * sheet.extension)
-        }
-        _ => format!("extension {:.2} %", 100.0 * sheet.extension),
-    };
-    format!("{title}: frame {}, {extension}", sheet.frame)
 }

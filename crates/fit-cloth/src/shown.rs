@@ -1,15 +1,15 @@
-//! What page and figures both show of a sequence, beside its shapes.
+//! What page and figures both show of a curve and of a sequence, beside its shapes.
 
 mod clip_force;
+mod curve_axes;
+mod extension;
+mod place;
 mod profile;
+mod pull;
 
 pub(crate) use clip_force::{ClipForce, clip_forces};
+pub(crate) use curve_axes::curve_labels;
+pub(crate) use extension::extension;
+pub(crate) use place::vector;
 pub(crate) use profile::{Profile, profiles};
-
-use cloth_fit::shapes::Place;
-use nalgebra::Vector3;
-
-/// In double precision.
-pub(crate) fn vector(place: Place) -> Vector3<f64> {
-    Vector3::from(place.map(f64::from))
-}
+pub(crate) use pull::pulled_rows;

@@ -1,5 +1,6 @@
 //! A fit's curves, and the course that each took, as the page's charts take them.
 
+use crate::shown::curve_labels;
 use crate::text::{self, NO_KNOWLEDGE};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::{Histogram, Sample, StageReport};
@@ -52,7 +53,7 @@ pub(super) fn curves(report: &FitReport) -> Vec<Curve> {
 }
 
 fn curve(report: &FitReport, component: Component) -> Curve {
-    let [x_label, y_label] = text::curve_labels(report.model, component);
+    let [x_label, y_label] = curve_labels(report.model, component);
     let stiffness_label = if component.is_bending() { "rigidity [N m]" } else { "stiffness [N/m]" }.into();
     let empty =
         Curve { component: component.to_string(), x_label, y_label, stiffness_label, ..Curve::default() };

@@ -1,7 +1,7 @@
 //! What the page shows of one fit.
 
 use super::curves::{Course, Curve, courses, curves};
-use super::sequences::{Sequence, sequences};
+use super::sequences::{Frames, Sequence, sequences};
 use crate::text;
 use cloth_fit::frame::MeasurementSet;
 use cloth_fit::incremental::FitReport;
@@ -11,15 +11,6 @@ use cloth_fit::report::SequenceReport;
 use cloth_fit::simulation::DroppedFrame;
 use cloth_fit::verdict::Grade;
 use serde::{Deserialize, Serialize};
-
-/// Whether the shapes of all frames are part of a page. Those of a dozen fits would make it too large to send.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Frames {
-    /// For the viewer.
-    Shown,
-    /// Curves, forces and profiles only.
-    LeftOut,
-}
 
 /// All of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

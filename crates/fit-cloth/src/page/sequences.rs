@@ -1,8 +1,6 @@
 //! A fit's sequences frame by frame: shapes, forces on the clips, profiles.
 
-use super::fit::Frames;
-use crate::plot::{extension, forces::pulled_rows};
-use crate::shown::{ClipForce, Profile, clip_forces, profiles, vector};
+use crate::shown::{ClipForce, Profile, clip_forces, extension, profiles, pulled_rows, vector};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use cloth_fit::frame::{self, MeasurementSet, Phase};
 use cloth_fit::report::{ForceRow, SequenceReport};
@@ -12,6 +10,15 @@ use serde::{Deserialize, Serialize};
 
 /// A coordinate that was not seen.
 const NOT_SEEN: i16 = i16::MIN;
+
+/// Whether the shapes of all frames are part of a page. Those of a dozen fits would make it too large to send.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Frames {
+    /// For the viewer.
+    Shown,
+    /// Curves, forces and profiles only.
+    LeftOut,
+}
 
 /// A sequence; arrays are little-endian, in base64.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

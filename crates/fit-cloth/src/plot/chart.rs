@@ -1,13 +1,13 @@
 //! What figures with axes have in common: paper, axes, legend.
 
+use super::drawing::{Area, Drawn};
 use super::series::{self, Mark, Series};
-use super::writing::{self, Area, INK, TEXT, TITLE, signed};
+use super::writing::{self, INK, TEXT, TITLE, signed};
 use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::coord::ranged1d::{AsRangedCoord, BoldPoints, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use std::error::Error;
 use std::ops::Range;
 
 /// Size of a figure: twice what it is shown at, since lines are drawn through whole pixels.
@@ -28,12 +28,6 @@ const NUMBERS: [usize; 2] = [9, 7];
 const BENEATH: f64 = 0.42;
 /// Least width of what lies between axes that are to scale, in pixels.
 const NARROWEST: f64 = 560.0;
-
-/// What a drawing may fail with.
-pub(super) type Drawn<T> = Result<T, Box<dyn Error>>;
-
-/// Where series are drawn.
-pub(super) type Context<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 
 /// How the numbers along an axis are told.
 type Label<'l> = Box<dyn Fn(&f64) -> String + 'l>;

@@ -1,7 +1,8 @@
 //! How each curve's residual fell, step by step.
 
-use super::chart::{Axes, Drawn, half_log_figure};
-use super::{BLUE, GREEN, ORANGE, PINK, SKY, VERMILLION};
+use super::chart::{Axes, half_log_figure};
+use super::drawing::Drawn;
+use super::palette::{BLUE, GREEN, ORANGE, PINK, SKY, VERMILLION};
 use cloth_fit::incremental::FitReport;
 use plotters::style::{Color, RGBColor};
 

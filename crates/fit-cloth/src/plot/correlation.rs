@@ -1,8 +1,8 @@
 //! Correlation of the control values of each curve, a block a curve.
 
-use super::chart::Drawn;
-use super::writing::{self, Area, INK, TEXT, TITLE, signed};
-use super::{BLUE, GREY, VERMILLION};
+use super::drawing::{Area, Drawn};
+use super::palette::{BLUE, GREY, VERMILLION};
+use super::writing::{self, INK, TEXT, TITLE, signed};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::StageReport;
 use plotters::prelude::*;

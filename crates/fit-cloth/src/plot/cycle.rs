@@ -1,7 +1,9 @@
 //! Something measured and simulated in every frame, against the extension: the measured cycle thin, the model thick.
 
-use super::chart::{Axes, Drawn, figure};
-use super::{MEASURED, MODEL, extension};
+use super::chart::{Axes, figure};
+use super::drawing::Drawn;
+use super::palette::{MEASURED, MODEL};
+use crate::shown::extension;
 use cloth_fit::frame::Kind;
 use plotters::style::Color;
 

@@ -1,7 +1,7 @@
 //! A measure of the whole against extension: measured, and the model, frame by frame.
 
-use super::chart::Drawn;
 use super::cycle::{self, Point};
+use super::drawing::Drawn;
 use cloth_fit::frame::Kind;
 use cloth_fit::validation::{Measure, MeasureRow};
 

@@ -1,8 +1,7 @@
 //! Faces and lines in the order of their distance.
 
-use super::chart::Drawn;
+use super::drawing::{Area, Drawn};
 use super::view::View;
-use super::writing::Area;
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
 use plotters::prelude::*;

@@ -1,11 +1,11 @@
 //! A frame as it was captured beside its equilibrium, with the forces on the clips.
 
-use super::chart::Drawn;
+use super::drawing::Drawn;
+use super::palette::{MEASURED, MODEL};
 use super::picture::{self, ArrowScale, Picture};
 use super::sheet::Sheet;
 use super::view::View;
 use super::writing::INK;
-use super::{MEASURED, MODEL, frame_title};
 use crate::shown::{ClipForce, clip_forces};
 use cloth_fit::frame::Sequence;
 use cloth_fit::report::SequenceReport;
@@ -73,5 +73,5 @@ pub(super) fn draw(title: &str, sequence: &Sequence, found: &SequenceReport) -> 
         name: "force on a clip",
         largest,
     });
-    picture::draw(&frame_title(title, found.kind, &sheet), WIDTH, &pictures, arrows)
+    picture::draw(&sheet.titled(title, found.kind), WIDTH, &pictures, arrows)
 }

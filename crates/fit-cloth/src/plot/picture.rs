@@ -1,9 +1,9 @@
 //! Views of sheets side by side at one scale, without perspective.
 
-use super::chart::Drawn;
+use super::drawing::{Area, Drawn};
 use super::painter::{Painter, Panel, draw_arrow};
 use super::view::View;
-use super::writing::{self, Area, INK, TEXT, TITLE};
+use super::writing::{self, INK, TEXT, TITLE};
 use nalgebra::Vector3;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;

@@ -1,7 +1,8 @@
 //! Profiles of a sheet over a table's edge, measured over simulated, every frame.
 
-use super::chart::{Axes, Drawn, figure_to_scale};
-use super::{GREY, MEASURED, MODEL};
+use super::chart::{Axes, figure_to_scale};
+use super::drawing::Drawn;
+use super::palette::{GREY, MEASURED, MODEL};
 use crate::shown::Profile;
 use plotters::style::Color;
 

@@ -1,10 +1,10 @@
 //! Where a frame was seen beside its equilibrium, node by node, magnified.
 
-use super::chart::Drawn;
+use super::drawing::Drawn;
+use super::palette::{GREY, MEASURED};
 use super::picture::{self, ArrowScale, Picture};
 use super::sheet::Sheet;
 use super::view::View;
-use super::{GREY, MEASURED, frame_title};
 use cloth_fit::frame::Sequence;
 use cloth_fit::report::SequenceReport;
 use nalgebra::Vector3;
@@ -59,5 +59,5 @@ pub(super) fn draw(title: &str, sequence: &Sequence, found: &SequenceReport) -> 
         }),
     };
     let arrows = ArrowScale { metres: 1e-3 * TIMES, unit: "mm", style, name: "residual", largest };
-    picture::draw(&frame_title(title, found.kind, &sheet), WIDTH, &[picture], Some(arrows))
+    picture::draw(&sheet.titled(title, found.kind), WIDTH, &[picture], Some(arrows))
 }

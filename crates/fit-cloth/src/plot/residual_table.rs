@@ -1,8 +1,8 @@
 //! How every sequence was met, as a table with bars.
 
-use super::chart::Drawn;
-use super::writing::{self, Area, INK, TEXT, TITLE};
-use super::{GREY, MODEL};
+use super::drawing::{Area, Drawn};
+use super::palette::{GREY, MODEL};
+use super::writing::{self, INK, TEXT, TITLE};
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::SequenceReport;
 use plotters::prelude::*;

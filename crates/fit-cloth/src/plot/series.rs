@@ -1,7 +1,7 @@
 //! What is drawn between axes, and how the legend names it.
 
-use super::chart::{Context, Drawn};
-use super::writing::{self, Area, INK, TEXT};
+use super::drawing::{Area, Context, Drawn};
+use super::writing::{self, INK, TEXT};
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;

@@ -1,6 +1,6 @@
 //! Shapes of a simulated sheet side by side.
 
-use super::chart::Drawn;
+use super::drawing::Drawn;
 use super::painter::Painter;
 use super::picture::{self, Picture};
 use super::view::View;

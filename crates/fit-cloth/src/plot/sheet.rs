@@ -1,7 +1,7 @@
 //! The frame of a sequence that figures show, on a mesh that is fine enough to look at.
 
 use crate::shown::vector;
-use cloth_fit::frame::Table;
+use cloth_fit::frame::{Kind, Table};
 use cloth_fit::shapes::{FrameShape, Place, Shapes};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::Vector3;
@@ -55,6 +55,18 @@ impl Sheet {
             measured: places(&frame.measured),
             rms: (!seen.is_empty()).then(|| mean.sqrt()),
         })
+    }
+
+    /// A figure's title with this frame.
+    pub(super) fn titled(&self, title: &str, kind: Kind) -> String {
+        let extension = match kind {
+            Kind::Shear | Kind::ComplexShear => format!("shear angle {:.3} rad", self.extension),
+            Kind::BendWeft | Kind::BendWarp | Kind::BendBias => {
+                format!("overhang {:.1} mm", 1e3 * self.extension)
+            }
+            _ => format!("extension {:.2} %", 100.0 * self.extension),
+        };
+        format!("{title}: frame {}, {extension}", self.frame)
     }
 
     /// Lines of nodes along both sides.

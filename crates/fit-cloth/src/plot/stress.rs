@@ -1,9 +1,10 @@
 //! Stress against strain, or moment against curvature, with its 95 % band and the control points; beneath, how much of
 //! the sheet has which strain.
 
-use super::chart::{Axes, Chart, Drawn, figure_over};
-use super::{GREEN, GREY, MODEL};
-use crate::text::curve_labels;
+use super::chart::{Axes, Chart, figure_over};
+use super::drawing::Drawn;
+use super::palette::{GREEN, GREY, MODEL};
+use crate::shown::curve_labels;
 use cloth_fit::report::{Histogram, Sample, StageReport};
 use plotters::style::Color;
 use std::ops::Range;

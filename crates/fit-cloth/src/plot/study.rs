@@ -3,17 +3,15 @@
 mod bars;
 mod convergence;
 mod error_time;
+mod extent;
 mod noise;
 mod parts;
 mod stages;
+mod style;
 
-use super::chart::Drawn;
-use super::{BLUE, GREEN, GREY, PINK, VERMILLION};
+use super::drawing::Drawn;
 use cloth_sim::material::Model;
-use cloth_study::solver::Solver;
 use cloth_study::study::Study;
-use plotters::style::{Color, RGBColor, ShapeStyle};
-use std::ops::Range;
 
 /// Every figure with its name.
 pub(super) fn figures(study: &Study) -> Vec<(String, Drawn<String>)> {
@@ -32,30 +30,4 @@ pub(super) fn figures(study: &Study) -> Vec<(String, Drawn<String>)> {
         figures.push((name, convergence::draw(study, model)));
     }
     figures
-}
-
-/// The colour of a model.
-fn colour(model: Model) -> RGBColor {
-    match model {
-        Model::Stvk => BLUE,
-        Model::SoftConstraint => VERMILLION,
-        Model::Springs => GREEN,
-    }
-}
-
-/// Dots of the default solver are filled, those of the published one open.
-fn dot(model: Model, solver: Solver) -> (i32, ShapeStyle) {
-    match solver {
-        Solver::Default => (8, colour(model).filled()),
-        Solver::AsPublished => (8, colour(model).stroke_width(3)),
-    }
-}
-
-/// Decades that hold all values; `None` without any above zero.
-fn decades(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
-    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
-    for value in values.filter(|value| *value > 0.0) {
-        (low, high) = (low.min(value), high.max(value));
-    }
-    (high > 0.0).then(|| 10f64.powf((0.9 * low).log10().floor())..10f64.powf((1.1 * high).log10().ceil()))
 }

@@ -2,13 +2,9 @@
 //!
 //! The reader's fonts are not known here: a character counts as 0.6 of the size, which is more than most take.
 
-use super::chart::Drawn;
-use plotters::coord::Shift;
+use super::drawing::{Area, Drawn};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-
-/// Where a figure is drawn.
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Sizes of a title and of all else, in plotters' measure, in which text is so much smaller than it says.
 pub(super) const TITLE: i32 = 36;

@@ -1,6 +1,6 @@
 //! Profiles of a sheet across a table's edge, measured and simulated.
 
-use super::vector;
+use super::place::vector;
 use cloth_fit::frame::Sequence;
 use cloth_fit::measure::bend_profile;
 use cloth_fit::shapes::{FrameShape, Place, Shapes};

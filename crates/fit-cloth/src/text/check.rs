@@ -1,6 +1,6 @@
 //! What a check has found: a table, the repairs, a verdict.
 
-use super::list;
+use super::list::list;
 use crate::subject::Subject;
 use cloth_fit::repair::Repair;
 use cloth_sim::curve::soundness::{Finding, Kind};

@@ -1,8 +1,9 @@
 //! Models and variants side by side.
 
-use super::{list, percent};
-use crate::page::Ranking;
+use super::list::list;
+use super::number::percent;
 use cloth_fit::compare::{Comparison, Criterion, Distance, Row};
+use serde::{Deserialize, Serialize};
 
 /// What stands in a row, and how wide on a terminal; text on the left, numbers on the right.
 const COLUMNS: [(&str, usize); 14] = [
@@ -22,6 +23,20 @@ const COLUMNS: [(&str, usize); 14] = [
     ("", 0),
 ];
 
+/// A comparison in words and cells.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ranking {
+    /// What ranks, in words.
+    pub by: String,
+    /// What no row tells: curves and predictions that are missing.
+    pub notes: Vec<String>,
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// Best first.
+    pub rows: Vec<Vec<String>>,
+}
+
 /// One row a model and variant, best first, and what the figures are.
 pub fn comparison(comparison: &Comparison) -> String {
     let names = COLUMNS.map(|(name, _)| name.to_string());
@@ -30,7 +45,7 @@ pub fn comparison(comparison: &Comparison) -> String {
     format!("{lines}\n{}\n{}", ranked_by(comparison.ranked_by), losses(comparison))
 }
 
-/// The same for a page.
+/// The same in cells.
 pub fn ranking(comparison: &Comparison) -> Ranking {
     Ranking {
         by: ranked_by(comparison.ranked_by),

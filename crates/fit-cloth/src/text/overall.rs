@@ -1,6 +1,7 @@
 //! A whole fit in four sentences: how it went, how good, how sure, what to measure next.
 
-use super::{half_band, list};
+use super::band::half_band;
+use super::list::list;
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::{SequenceReport, StageReport};
 use cloth_fit::verdict::{self, Verdict, widest_band};

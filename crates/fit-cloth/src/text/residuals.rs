@@ -1,6 +1,6 @@
 //! How every sequence was met.
 
-use super::{cell, percent};
+use super::number::{cell, percent};
 use cloth_fit::incremental::FitReport;
 use std::fmt::Write;
 

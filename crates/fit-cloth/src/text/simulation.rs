@@ -1,6 +1,7 @@
 //! What came of a scene.
 
-use super::{interventions, list};
+use super::interventions::interventions;
+use super::list::list;
 use cloth_fit::material::Material;
 use cloth_scene::drape::Drape;
 use cloth_scene::droop::Droop;

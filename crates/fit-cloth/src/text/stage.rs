@@ -1,6 +1,10 @@
 //! One stage: what it used, how it went, the curve.
 
-use super::{NO_KNOWLEDGE, interventions, list, seen, unit};
+use super::band::NO_KNOWLEDGE;
+use super::interventions::interventions;
+use super::list::list;
+use super::range::seen;
+use super::unit::unit;
 use cloth_fit::curve_file::Kind;
 use cloth_fit::report::StageReport;
 use cloth_fit::simulation::Objective;

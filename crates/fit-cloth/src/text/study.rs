@@ -11,7 +11,8 @@ mod sections;
 pub use section::Section;
 pub use sections::sections;
 
-use super::{list, percent};
+use super::list::list;
+use super::number::percent;
 use cloth_sim::material::Model;
 use cloth_study::run::{Ending, Part, Run};
 use cloth_study::solver::Solver;

@@ -1,6 +1,8 @@
 //! All curves at a glance.
 
-use super::{half_band, list, seen};
+use super::band::half_band;
+use super::list::list;
+use super::range::seen;
 use cloth_fit::incremental::FitReport;
 use cloth_fit::report::{Sample, StageReport};
 use cloth_sim::material::Component;

@@ -1,6 +1,8 @@
 //! How curves meet tests that their fit did not see.
 
-use super::{cell, interventions, list, percent};
+use super::interventions::interventions;
+use super::list::list;
+use super::number::{cell, percent};
 use cloth_fit::frame::MeasurementSet;
 use cloth_fit::material_file::{CurveEntry, MaterialFile};
 use cloth_fit::validation::{Validated, Validation};

@@ -1,6 +1,9 @@
 //! A stage in one sentence.
 
-use super::{list, seen, sure, unit};
+use super::band::sure;
+use super::list::list;
+use super::range::seen;
+use super::unit::unit;
 use cloth_fit::incremental::FitReport;
 use cloth_fit::inspection::Notice;
 use cloth_fit::report::{SequenceReport, StageReport};

@@ -17,6 +17,8 @@ mod collapse;
 mod convergence;
 mod curves;
 mod derivatives;
+#[path = "../../src/plot/drawing.rs"]
+mod drawing;
 mod elements;
 mod equilibria;
 #[cfg(target_os = "linux")]

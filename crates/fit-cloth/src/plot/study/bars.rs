@@ -1,6 +1,6 @@
 //! Horizontal bars with their names on the left and a note on the right.
 
-use super::Drawn;
+use crate::plot::drawing::Drawn;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;

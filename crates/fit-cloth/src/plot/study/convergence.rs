@@ -1,7 +1,9 @@
 //! Error of the places against the size of a cell, with a line of slope two.
 
-use super::{BLUE, Drawn, GREEN, GREY, PINK, VERMILLION, decades};
+use super::extent::decades;
 use crate::plot::chart::{Axes, log_figure};
+use crate::plot::drawing::Drawn;
+use crate::plot::palette::{BLUE, GREEN, GREY, PINK, VERMILLION};
 use cloth_sim::material::Model;
 use cloth_study::run::{Part, Run};
 use cloth_study::solver::Solver;

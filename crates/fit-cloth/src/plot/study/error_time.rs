@@ -1,8 +1,10 @@
 //! Error against wall time, a line a model and solver; what failed stands as crosses, along the top where
 //! it has no error.
 
-use super::{Drawn, decades, dot};
+use super::extent::decades;
+use super::style::{colour, dot};
 use crate::plot::chart::{Axes, log_figure};
+use crate::plot::drawing::Drawn;
 use cloth_sim::material::Model;
 use cloth_study::pareto::front;
 use cloth_study::run::{Part, Run};
@@ -66,12 +68,12 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
                     continue;
                 }
                 let (size, style) = dot(model, solver);
-                chart.paths([points.clone()], super::colour(model).stroke_width(3), "");
+                chart.paths([points.clone()], colour(model).stroke_width(3), "");
                 chart.dots(points.iter().copied(), (size, style), &format!("{model}, {solver}"));
             }
         }
         for model in Model::ALL.into_iter().filter(|&model| !failed(model).is_empty()) {
-            let style = super::colour(model).stroke_width(4);
+            let style = colour(model).stroke_width(4);
             chart.crosses(failed(model), style, &format!("{model}, failed"));
         }
     })

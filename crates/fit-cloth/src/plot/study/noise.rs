@@ -1,7 +1,9 @@
 //! Curve error against noise, and the least that there can be.
 
-use super::{BLUE, Drawn, VERMILLION, decades};
+use super::extent::decades;
 use crate::plot::chart::{Axes, log_figure};
+use crate::plot::drawing::Drawn;
+use crate::plot::palette::{BLUE, VERMILLION};
 use cloth_study::level::levels;
 use cloth_study::study::Study;
 use plotters::style::Color;

@@ -1,7 +1,8 @@
 //! What leaving out each part saves, and which error it causes.
 
 use super::bars::{self, Bar};
-use super::{BLUE, Drawn, VERMILLION};
+use crate::plot::drawing::Drawn;
+use crate::plot::palette::{BLUE, VERMILLION};
 use cloth_study::ablation::Ablated;
 use cloth_study::run::Ending;
 use cloth_study::study::Study;

@@ -1,7 +1,8 @@
 //! Where the time of a fit goes: stages end to end, a bar a model and solver.
 
 use super::bars::{self, Bar};
-use super::{BLUE, Drawn, GREEN, PINK, VERMILLION};
+use crate::plot::drawing::Drawn;
+use crate::plot::palette::{BLUE, GREEN, PINK, VERMILLION};
 use cloth_sim::material::Model;
 use cloth_study::run::Part;
 use cloth_study::solver::Solver;

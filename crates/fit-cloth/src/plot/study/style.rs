@@ -1,0 +1,23 @@
+//! How models and solvers are told apart.
+
+use crate::plot::palette::{BLUE, GREEN, VERMILLION};
+use cloth_sim::material::Model;
+use cloth_study::solver::Solver;
+use plotters::style::{Color, RGBColor, ShapeStyle};
+
+/// The colour of a model.
+pub(super) fn colour(model: Model) -> RGBColor {
+    match model {
+        Model::Stvk => BLUE,
+        Model::SoftConstraint => VERMILLION,
+        Model::Springs => GREEN,
+    }
+}
+
+/// Dots of the default solver are filled, those of the published one open.
+pub(super) fn dot(model: Model, solver: Solver) -> (i32, ShapeStyle) {
+    match solver {
+        Solver::Default => (8, colour(model).filled()),
+        Solver::AsPublished => (8, colour(model).stroke_width(3)),
+    }
+}

@@ -1,0 +1,8 @@
+//! Lists.
+
+use std::fmt::Display;
+
+/// Items with commas between them.
+pub(super) fn list(items: impl IntoIterator<Item = impl Display>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,14 @@
+//! The range of a curve that was seen.
+
+use cloth_fit::report::StageReport;
+
+/// The strains or curvatures between which a stage's curve was seen.
+pub(super) fn seen(stage: &StageReport) -> String {
+    let digits = if stage.components[0].is_bending() { 2 } else { 4 };
+    let [low, high] = stage.curve.seen.map(|strain| {
+        let text = format!("{strain:.digits$}");
+        // What rounds to zero has no sign.
+        if text.trim_start_matches(['-', '0', '.']).is_empty() { text.replace('-', "") } else { text }
+    });
+    format!("{low} to {high}")
+}
