@@ -4,7 +4,7 @@ use cloth_fit::error::Error;
 use std::error::Error as _;
 use std::io;
 
-/// What stopped a command. A fit that does not converge is no failure: see [`Outcome`](crate::command::Outcome).
+/// What stopped a command. A fit that does not converge is no failure: see [`Outcome`](crate::outcome::Outcome).
 #[derive(Debug)]
 pub enum Failure {
     /// A measurement, a setting or a file.

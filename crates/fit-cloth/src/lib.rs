@@ -9,22 +9,25 @@
 //! | 4 | not converged; what was reached is written, and marked so |
 //! | 130 | interrupted |
 
+pub mod cli;
 pub mod command;
 pub mod failure;
 mod interrupt;
 pub mod options;
+pub mod outcome;
 pub mod output;
 pub mod page;
 pub mod plot;
 pub mod progress;
 mod shown;
 pub mod subject;
+pub mod telling;
 pub mod text;
 
 use clap::Parser;
-use command::Outcome;
+use cli::Options;
 use failure::Failure;
-use options::Options;
+use outcome::Outcome;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 

@@ -5,7 +5,7 @@
 
 use crate::failure::with_option;
 use cloth_fit::error::Error;
-use cloth_fit::store::{OutputFolder, Recalled};
+use cloth_fit::store::{OutputFolder, Recalled, write_file};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -23,6 +23,20 @@ fn making() -> MutexGuard<'static, Vec<OutputFolder>> {
 pub(crate) fn whole<T>(write: impl FnOnce() -> T) -> T {
     let _held = making();
     write()
+}
+
+/// Writes text to a file that is not the one it was made from.
+///
+/// # Errors
+/// The same file; what the operating system refuses.
+pub(crate) fn write(flag: &str, out: &Path, input: &Path, text: &str) -> Result<(), Error> {
+    if let (Ok(out), Ok(same)) = (out.canonicalize(), input.canonicalize())
+        && out == same
+    {
+        let expected = "another file: the input is never changed";
+        return Err(Error::input(input, None, flag, "the input itself", expected));
+    }
+    whole(|| write_file(out, text.as_bytes()))
 }
 
 /// The output folder of a command: its own from the start of the computation until the result is in place.

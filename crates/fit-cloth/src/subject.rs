@@ -1,12 +1,10 @@
 //! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
 
-use crate::output::whole;
 use clap::{Args, ValueEnum};
 use cloth_fit::check::context;
 use cloth_fit::curve_file::{CurveFile, Kind};
 use cloth_fit::error::{Error, Result};
 use cloth_fit::material_file::MaterialFile;
-use cloth_fit::store::write_file;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::curve::soundness::{Context, Finding, check};
 use cloth_sim::material::{Component, Compression, Model};
@@ -154,18 +152,4 @@ fn read_material(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>
         return Err(Error::input(path, None, "curves", found, "a component with control points"));
     }
     Ok((Source::Material(Box::new(file)), subjects))
-}
-
-/// Writes text to a file that is not the one it was made from.
-///
-/// # Errors
-/// The same file; what the operating system refuses.
-pub fn write(flag: &str, out: &Path, input: &Path, text: &str) -> Result<()> {
-    if let (Ok(out), Ok(same)) = (out.canonicalize(), input.canonicalize())
-        && out == same
-    {
-        let expected = "another file: the input is never changed";
-        return Err(Error::input(input, None, flag, "the input itself", expected));
-    }
-    whole(|| write_file(out, text.as_bytes()))
 }

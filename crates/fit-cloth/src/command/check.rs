@@ -1,9 +1,10 @@
 //! `fit-cloth check`: whether curves can be simulated, and the nearest that can.
 
-use super::{Outcome, tell};
 use crate::failure::Failure;
-use crate::options::Telling;
-use crate::subject::{Reading, Source, Subject, read, write};
+use crate::outcome::Outcome;
+use crate::output::write;
+use crate::subject::{Reading, Source, Subject, read};
+use crate::telling::{Telling, tell};
 use crate::text;
 use clap::Args;
 use cloth_fit::error::Error;

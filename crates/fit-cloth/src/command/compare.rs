@@ -1,10 +1,13 @@
 //! `fit-cloth compare`: three models in four variants on one measurement set.
 
-use super::{Outcome, fit, program, recalled, tell, warn};
+use super::journal::{program, recalled};
+use super::kinds::{has_any, nothing};
 use crate::failure::Failure;
-use crate::options::{CurveFlags, SetFlags, Telling};
+use crate::options::{CurveFlags, SetFlags};
+use crate::outcome::Outcome;
 use crate::page::{Fit, Frames, Page};
 use crate::progress::Progress;
+use crate::telling::{Telling, tell, warn};
 use crate::text;
 use clap::Args;
 use cloth_fit::compare::{self, Comparison, Entry, Row};
@@ -57,8 +60,8 @@ struct Shown {
 pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (set, out) = options.on.open("-compare")?;
     let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).collect();
-    if !fit::has_any(&set, &kinds) {
-        return Err(fit::nothing(&options.on.set, &set, &kinds).into());
+    if !has_any(&set, &kinds) {
+        return Err(nothing(&options.on.set, &set, &kinds).into());
     }
     let contestants = compare::contestants(&options.how.settings(&options.on));
     let key =

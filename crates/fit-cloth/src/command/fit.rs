@@ -1,17 +1,20 @@
 //! `fit-cloth stretch | shear | bend | fit`: curves from a measurement set.
 
 use super::goal::Goal;
-use super::{Outcome, program, recalled, warn, warn_of_defects};
+use super::journal::{program, recalled};
+use super::kinds::{has_any, nothing};
 use crate::failure::{Failure, with_option};
-use crate::options::{FitFlags, Telling, refuse_within};
+use crate::options::{FitFlags, refuse_within};
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::page::{Fit, Frames, Page};
 use crate::plot::write_plots;
 use crate::progress::Progress;
+use crate::telling::{Telling, warn, warn_of_defects};
 use crate::text;
 use cloth_fit::check::{check_material, refuse_unstable};
 use cloth_fit::error::Error;
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_fit::frame::MeasurementSet;
 use cloth_fit::incremental::{self, Failure as Failed, Finished, FitReport, Memory};
 use cloth_fit::inspection::{Notice, Severity, inspect};
 use cloth_fit::knowledge::Knowledge;
@@ -197,27 +200,6 @@ fn doubt_known(report: &mut FitReport, known: &str, fabric: &str) {
     };
     let notices: Vec<Notice> = names.into_iter().map(notice).collect();
     report.notices.extend(notices);
-}
-
-/// True if a set has a sequence of one of some kinds.
-pub(super) fn has_any(set: &MeasurementSet, kinds: &[Kind]) -> bool {
-    set.sequences.iter().any(|sequence| kinds.contains(&sequence.kind))
-}
-
-/// No sequence of a set is of the kinds that are wanted.
-pub(super) fn nothing(path: &Path, set: &MeasurementSet, kinds: &[Kind]) -> Error {
-    let names =
-        |kinds: &mut dyn Iterator<Item = Kind>| kinds.map(|kind| kind.to_string()).collect::<Vec<_>>();
-    let present: BTreeSet<Kind> = set.sequences.iter().map(|sequence| sequence.kind).collect();
-    let found = match present.is_empty() {
-        true => "no sequence at all".to_string(),
-        false => names(&mut present.into_iter()).join(", "),
-    };
-    let expected = match names(&mut kinds.iter().copied()).join(" or ") {
-        kinds if kinds.is_empty() => "a --known file that lacks a curve".into(),
-        kinds => format!("a sequence of kind {kinds}"),
-    };
-    Error::input(path, None, "kind", found, expected)
 }
 
 /// * `several` — models: each has a folder of its own, and all share a page

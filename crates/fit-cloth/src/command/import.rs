@@ -1,11 +1,12 @@
 //! `fit-cloth import`: a laboratory's table into a measurement set, or into a curve.
 
+pub mod selection;
 pub mod strip;
 pub mod table;
 
-use super::Outcome;
 use crate::failure::Failure;
-use crate::options::Telling;
+use crate::outcome::Outcome;
+use crate::telling::Telling;
 use clap::{Args, Subcommand};
 use std::io::Write;
 use strip::StripOptions;

@@ -1,10 +1,10 @@
 //! `fit-cloth report`: the page of a result folder, written again.
 
-use super::{Outcome, tell};
 use crate::failure::Failure;
-use crate::options::Telling;
+use crate::outcome::Outcome;
 use crate::output::whole;
 use crate::page::Page;
+use crate::telling::{Telling, tell};
 use clap::Args;
 use serde_json::json;
 use std::io::Write;

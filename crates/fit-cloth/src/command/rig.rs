@@ -1,10 +1,11 @@
 //! `fit-cloth rig`: a known fabric into a measurement set.
 
-use super::{Outcome, tell};
 use crate::failure::Failure;
-use crate::options::{Telling, parse_kind, parse_nodes};
+use crate::options::{parse_kind, parse_nodes};
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::progress::Progress;
+use crate::telling::{Telling, tell};
 use clap::Args;
 use cloth_fit::error::Error;
 use cloth_fit::frame::Kind;

@@ -1,11 +1,12 @@
 //! `fit-cloth simulate`: a scene of a material, in motion or at rest.
 
-use super::{Outcome, tell, warn_of_defects};
 use crate::failure::Failure;
-use crate::options::{CompressionChoice, Telling, refuse_within};
+use crate::options::{CompressionChoice, refuse_within};
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_simulation_plots;
 use crate::progress::StepBar;
+use crate::telling::{Telling, tell, warn_of_defects};
 use crate::text;
 use clap::{Args, ValueEnum};
 use cloth_fit::check::{check_curves, refuse_unstable};

@@ -1,11 +1,12 @@
 //! `fit-cloth study`: error against run time, and what each part that a scene can leave out saves and costs.
 
-use super::{Outcome, tell};
 use crate::failure::Failure;
-use crate::options::{SetFlags, Telling, TopicChoice, use_threads};
+use crate::options::{SetFlags, TopicChoice, use_threads};
+use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_study_plots;
 use crate::progress::Progress;
+use crate::telling::{Telling, tell};
 use crate::text;
 use clap::Args;
 use cloth_fit::result::check_output;

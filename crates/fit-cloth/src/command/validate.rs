@@ -1,10 +1,12 @@
 //! `fit-cloth validate`: fitted curves on motions and samples that the fit did not see.
 
-use super::{Outcome, fit, tell, warn, warn_of_defects};
+use super::kinds::{has_any, nothing};
 use crate::failure::{Failure, with_option};
-use crate::options::{SetFlags, Telling, parse_kind, refuse_within};
+use crate::options::{SetFlags, parse_kind, refuse_within};
+use crate::outcome::Outcome;
 use crate::plot::write_validation_plots;
 use crate::progress::Progress;
+use crate::telling::{Telling, tell, warn, warn_of_defects};
 use crate::text;
 use clap::Args;
 use cloth_fit::check::check_material;
@@ -60,8 +62,8 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     let material = MaterialFile::read(&options.material)?;
     let curves = curves(options, &material)?;
     let kinds = options.kinds_of(&set);
-    if !fit::has_any(&set, &kinds) {
-        return Err(with_option(fit::nothing(&options.on.set, &set, &kinds), "--kinds, --all").into());
+    if !has_any(&set, &kinds) {
+        return Err(with_option(nothing(&options.on.set, &set, &kinds), "--kinds, --all").into());
     }
     if options.kinds.is_empty() && !options.all && kinds.len() == Kind::ALL.len() {
         let taken = "all tests of the set are taken, since it has neither complex-shear nor corner-pull, which no fit uses: curves \

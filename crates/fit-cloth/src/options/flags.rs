@@ -1,6 +1,6 @@
 //! The flags of the commands that fit.
 
-use super::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
+use super::choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
 use crate::failure::Failure;
 use crate::output::Output;
 use clap::Args;

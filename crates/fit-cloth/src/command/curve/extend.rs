@@ -1,10 +1,10 @@
 //! `fit-cloth curve extend`: a straight piece of stress at the end.
 
-use super::{finish, in_material, one};
-use crate::command::Outcome;
+use super::edited::{finish, in_material, one};
 use crate::failure::Failure;
-use crate::options::Telling;
+use crate::outcome::Outcome;
 use crate::subject::{Reading, Source};
+use crate::telling::Telling;
 use clap::Args;
 use cloth_fit::curve_edit::{Extension, Trend, extended};
 use std::io::Write;

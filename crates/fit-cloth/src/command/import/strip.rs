@@ -1,15 +1,16 @@
 //! `fit-cloth import strip`: a tensile machine's table into a sequence.
 
-use crate::command::{Outcome, note_lines_above, tell, warn};
+use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::{Failure, with_option};
-use crate::options::Telling;
+use crate::outcome::Outcome;
 use crate::output::whole;
+use crate::telling::{Telling, note_lines_above, tell, warn};
 use clap::{Args, ValueEnum};
 use cloth_fit::error::Error;
 use cloth_fit::frame::Sequence;
 use cloth_fit::io::read_fabric;
 use cloth_fit::strip::{
-    Added, Column, Direction, Extension, FreeLength, Sample, Strip, StripTest, add_to_set, read_strip,
+    Added, Column, Direction, FreeLength, Sample, Strip, StripTest, add_to_set, read_strip,
 };
 use nalgebra::Isometry3;
 use serde_json::json;
@@ -100,33 +101,6 @@ pub struct StripOptions {
     /// Standard deviation of the load cell
     #[arg(long, value_name = "N")]
     pub force_noise_n: Option<f64>,
-}
-
-/// The column that tells where the clamps were: one of three.
-#[derive(Debug, Clone, Args)]
-#[group(required = true, multiple = false)]
-pub struct ExtensionOptions {
-    /// Column of the clamps' distance
-    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
-    pub separation: Option<Column>,
-    /// Column of the clamps' distance less the gauge length
-    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
-    pub displacement: Option<Column>,
-    /// Column of the engineering strain: displacement by gauge length
-    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
-    pub strain: Option<Column>,
-}
-
-impl ExtensionOptions {
-    /// The column that was named.
-    pub(super) fn chosen(&self) -> Extension {
-        let Self { separation, displacement, strain } = self.clone();
-        separation
-            .map(Extension::Separation)
-            .or(displacement.map(Extension::Displacement))
-            .or(strain.map(Extension::Strain))
-            .expect("clap requires one of the group")
-    }
 }
 
 /// Which way the strip was pulled.
@@ -294,19 +268,4 @@ fn range(values: Vec<f64>) -> [f64; 2] {
         values.into_iter().fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)]);
     // What rounds to zero has no sign.
     ends.map(|end| if end.abs() < 5e-5 { 0.0 } else { end })
-}
-
-/// `COLUMN[:UNIT]`
-pub(super) fn column(text: &str) -> Result<Column, String> {
-    let column = Column::from(text);
-    if column.name.is_empty() { Err("a column's name is missing".into()) } else { Ok(column) }
-}
-
-/// `FIRST-LAST` or `FIRST-`
-pub(super) fn rows(text: &str) -> Result<RangeInclusive<usize>, String> {
-    let (first, last) =
-        text.split_once('-').ok_or("two row numbers with - between them, such as 3-90 or 3-")?;
-    let number = |text: &str| text.trim().parse().map_err(|_| format!("{text:?} is no row number"));
-    let last = if last.trim().is_empty() { usize::MAX } else { number(last)? };
-    Ok(number(first)?..=last)
 }

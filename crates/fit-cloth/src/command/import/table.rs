@@ -1,10 +1,10 @@
 //! `fit-cloth import table`: force over elongation into stress over strain.
 
-use super::strip::{ExtensionOptions, column, rows};
-use crate::command::{Outcome, note_lines_above, tell, warn};
+use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::Failure;
-use crate::options::Telling;
-use crate::subject::write;
+use crate::outcome::Outcome;
+use crate::output::write;
+use crate::telling::{Telling, note_lines_above, tell, warn};
 use clap::{Args, ValueEnum};
 use cloth_fit::check::context;
 use cloth_fit::curve_edit::largest_stress;

@@ -1,0 +1,47 @@
+//! Which columns and rows of a table are taken.
+
+use clap::Args;
+use cloth_fit::strip::{Column, Extension};
+use std::ops::RangeInclusive;
+
+/// The column that tells where the clamps were: one of three.
+#[derive(Debug, Clone, Args)]
+#[group(required = true, multiple = false)]
+pub struct ExtensionOptions {
+    /// Column of the clamps' distance
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub separation: Option<Column>,
+    /// Column of the clamps' distance less the gauge length
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub displacement: Option<Column>,
+    /// Column of the engineering strain: displacement by gauge length
+    #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
+    pub strain: Option<Column>,
+}
+
+impl ExtensionOptions {
+    /// The column that was named.
+    pub(super) fn chosen(&self) -> Extension {
+        let Self { separation, displacement, strain } = self.clone();
+        separation
+            .map(Extension::Separation)
+            .or(displacement.map(Extension::Displacement))
+            .or(strain.map(Extension::Strain))
+            .expect("clap requires one of the group")
+    }
+}
+
+/// `COLUMN[:UNIT]`
+pub(super) fn column(text: &str) -> Result<Column, String> {
+    let column = Column::from(text);
+    if column.name.is_empty() { Err("a column's name is missing".into()) } else { Ok(column) }
+}
+
+/// `FIRST-LAST` or `FIRST-`
+pub(super) fn rows(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let (first, last) =
+        text.split_once('-').ok_or("two row numbers with - between them, such as 3-90 or 3-")?;
+    let number = |text: &str| text.trim().parse().map_err(|_| format!("{text:?} is no row number"));
+    let last = if last.trim().is_empty() { usize::MAX } else { number(last)? };
+    Ok(number(first)?..=last)
+}
