@@ -1,18 +1,22 @@
-//! The command line: all commands and their arguments.
+//! The command line: all commands with their arguments, each handed to the file that carries it out.
 
-use crate::command::check::CheckOptions;
-use crate::command::compare::CompareOptions;
-use crate::command::curve::Curve;
-use crate::command::goal;
-use crate::command::import::Import;
-use crate::command::report::ReportOptions;
-use crate::command::rig::RigOptions;
-use crate::command::simulate::SimulateOptions;
-use crate::command::study::StudyOptions;
-use crate::command::validate::ValidateOptions;
+use crate::command::check::{self, CheckOptions};
+use crate::command::compare::{self, CompareOptions};
+use crate::command::curve::{self, Curve};
+use crate::command::fit;
+use crate::command::goal::{self, Goal};
+use crate::command::import::{self, Import};
+use crate::command::report::{self, ReportOptions};
+use crate::command::rig::{self, RigOptions};
+use crate::command::simulate::{self, SimulateOptions};
+use crate::command::study::{self, StudyOptions};
+use crate::command::validate::{self, ValidateOptions};
+use crate::failure::Failure;
 use crate::options::FitFlags;
+use crate::outcome::Outcome;
 use crate::telling::Telling;
 use clap::{Parser, Subcommand};
+use std::io::Write;
 
 /// Fits stress-strain curves of cloth to measurements and writes them for simulators.
 #[derive(Debug, Clone, Parser)]
@@ -60,4 +64,26 @@ pub enum Command {
     Study(StudyOptions),
     /// Write the page of a fit or a comparison again
     Report(ReportOptions),
+}
+
+/// Carries out a command and writes its result to `output`.
+///
+/// # Errors
+/// What stopped it.
+pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failure> {
+    match &options.command {
+        Command::Import(import) => import::run(import, options.telling, output),
+        Command::Rig(rig) => rig::run(rig, options.telling, output),
+        Command::Stretch(flags) => fit::run(Goal::Stretch, flags, options.telling, output),
+        Command::Shear(flags) => fit::run(Goal::Shear, flags, options.telling, output),
+        Command::Bend(flags) => fit::run(Goal::Bend, flags, options.telling, output),
+        Command::Fit(flags) => fit::run(Goal::All, flags, options.telling, output),
+        Command::Check(check) => check::run(check, options.telling, output),
+        Command::Curve(curve) => curve::run(curve, options.telling, output),
+        Command::Compare(compare) => compare::run(compare, options.telling, output),
+        Command::Simulate(simulate) => simulate::run(simulate, options.telling, output),
+        Command::Report(report) => report::run(report, options.telling, output),
+        Command::Study(study) => study::run(study, options.telling, output),
+        Command::Validate(validate) => validate::run(validate, options.telling, output),
+    }
 }

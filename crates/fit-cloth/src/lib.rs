@@ -52,7 +52,7 @@ fn run() -> ExitCode {
         }
     };
     let mut output = Patient(io::stdout().lock());
-    let outcome = command::run(&options, &mut output);
+    let outcome = cli::run(&options, &mut output);
     match outcome.and_then(|outcome| output.flush().map_err(Failure::from).map(|()| outcome)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Defective) => ExitCode::from(3),
