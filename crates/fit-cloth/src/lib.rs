@@ -8,6 +8,16 @@
 //! | 3 | bad input: a file, a measurement or a setting; a curve that `check` finds a defect in |
 //! | 4 | not converged; what was reached is written, and marked so |
 //! | 130 | interrupted |
+//!
+//! | module | role |
+//! |---|---|
+//! | [`cli`] | all commands with their arguments |
+//! | [`command`] | the commands, one file each |
+//! | [`options`] | the flags that commands share |
+//! | [`subject`] | the curves that `check` and `curve` work on |
+//! | [`text`], [`plot`], [`page`] | what was found: in words, as figures, as a page |
+//! | [`telling`], [`output`], [`progress`] | standard output and standard error; files, whole or not at all; how far it is |
+//! | [`outcome`], [`failure`] | how a command has ended, or why it could not be carried out |
 
 pub mod cli;
 pub mod command;

@@ -2,7 +2,11 @@
 
 mod choice;
 mod flags;
+mod reading;
 
-pub use choice::{CompressionChoice, ConstraintChoice, ModelChoice, TopicChoice, VariantChoice};
+pub use choice::{
+    ComponentChoice, CompressionChoice, ConstraintChoice, ModelChoice, TableModel, TopicChoice, VariantChoice,
+};
 pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
 pub(crate) use flags::{refuse_within, use_threads};
+pub use reading::Reading;

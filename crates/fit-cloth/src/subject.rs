@@ -1,6 +1,5 @@
 //! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
 
-use clap::{Args, ValueEnum};
 use cloth_fit::check::context;
 use cloth_fit::curve_file::{CurveFile, Kind};
 use cloth_fit::error::{Error, Result};
@@ -9,59 +8,6 @@ use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::curve::soundness::{Context, Finding, check};
 use cloth_sim::material::{Component, Compression, Model};
 use std::path::Path;
-
-/// How a table of one curve is to be read.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Reading")]
-pub struct Reading {
-    /// The curve's component: which of a material.json [check: all]; of a table only where rows lie below zero, which
-    /// stretch and shear read differently
-    #[arg(long, value_enum)]
-    pub component: Option<ComponentChoice>,
-    /// The model whose strains a table is over [default: as its columns say, else stvk]
-    #[arg(long, value_enum)]
-    pub model: Option<TableModel>,
-}
-
-/// One of the six components.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ComponentChoice {
-    /// Stretch along weft
-    StretchWeft,
-    /// Stretch along warp
-    StretchWarp,
-    /// Shear between the yarns
-    Shear,
-    /// Bending along weft
-    BendWeft,
-    /// Bending along warp
-    BendWarp,
-    /// Bending along neither
-    BendDiagonal,
-}
-
-impl From<ComponentChoice> for Component {
-    fn from(choice: ComponentChoice) -> Self {
-        Self::ALL[choice as usize]
-    }
-}
-
-/// One model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum TableModel {
-    /// Green strain, hinges
-    Stvk,
-    /// Engineering strain, hinges
-    SoftConstraint,
-    /// Engineering strain of springs
-    Springs,
-}
-
-impl From<TableModel> for Model {
-    fn from(choice: TableModel) -> Self {
-        Self::ALL[choice as usize]
-    }
-}
 
 /// Where curves came from, and go back to.
 #[derive(Debug, Clone)]
@@ -100,22 +46,29 @@ impl Subject {
 
 /// Reads a `material.json`, known by its ending, or a table.
 ///
+/// * `component` — the one that is wanted of a material, or that a table is of
+/// * `model` — whose strains a table is over; `None` for what its columns say
+///
 /// # Errors
 /// A bad file; a component that it does not have; a table with rows below zero without a component.
-pub fn read(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>)> {
+pub fn read(
+    path: &Path,
+    component: Option<Component>,
+    model: Option<Model>,
+) -> Result<(Source, Vec<Subject>)> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
-        return read_material(path, reading);
+        return read_material(path, component);
     }
     let file = CurveFile::read(path)?;
-    let component = match (reading.component, file.kind) {
-        (Some(component), _) => component.into(),
+    let component = match (component, file.kind) {
+        (Some(component), _) => component,
         (None, Kind::Membrane) if file.is_two_sided() => {
             let expected = "--component, since stretch and shear read rows below zero differently";
             return Err(Error::input(path, None, file.kind.columns()[0], "rows below zero", expected));
         }
         (None, kind) => kind.typical().0,
     };
-    let model = reading.model.map_or(file.kind.typical().1, Model::from);
+    let model = model.unwrap_or(file.kind.typical().1);
     let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (axis, unit) = match file.kind {
@@ -128,10 +81,9 @@ pub fn read(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>)> {
     Ok((Source::Table(file), vec![subject]))
 }
 
-fn read_material(path: &Path, reading: &Reading) -> Result<(Source, Vec<Subject>)> {
+fn read_material(path: &Path, wanted: Option<Component>) -> Result<(Source, Vec<Subject>)> {
     let file = MaterialFile::read(path)?;
     let curves = file.curves()?;
-    let wanted: Option<Component> = reading.component.map(Component::from);
     let components = curves.components().filter(|component| wanted.is_none_or(|wanted| wanted == *component));
     let subjects: Vec<Subject> = components
         .filter_map(|component| {

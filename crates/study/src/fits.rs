@@ -1,10 +1,12 @@
 //! Fits of the set: nodes, models and solvers each with each; control points and frames one at a time.
 
 use crate::extent::Extent;
+use crate::mean::root_mean_square;
 use crate::physical::Reference;
 use crate::progress::Progress;
-use crate::run::{Ending, Part, Run, Spent, root_mean_square, spend};
+use crate::run::{Ending, Part, Run};
 use crate::solver::Solver;
+use crate::spent::{Spent, spend};
 use crate::subject::Subject;
 use cloth_fit::error::Result;
 use cloth_fit::frame::MeasurementSet;

@@ -1,6 +1,7 @@
 //! The fits to one noise, averaged over their seeds.
 
-use crate::run::{Part, Run, root_mean_square};
+use crate::mean::root_mean_square;
+use crate::run::{Part, Run};
 use crate::study::Study;
 
 /// All seeds of one noise together.

@@ -15,7 +15,7 @@
 //! | [`subject`], [`fabrics`] | what is studied: a measurement set, and the truth behind it where that is known |
 //! | [`extent`] | how much is run |
 //! | [`study`] | all of it, from subject to rows |
-//! | [`run`], [`ablation`] | a row: a run with its error and its cost; a part with what it saves |
+//! | [`run`], [`spent`], [`ablation`] | a row: a run with its error and its cost; a part with what it saves |
 //! | [`solver`] | the program's own method, and the published one |
 //! | [`level`], [`pareto`] | what rows come to: averages over seeds, the runs that no other beats |
 //! | [`table`] | the rows as files |
@@ -41,6 +41,7 @@ pub mod extent;
 pub mod fabrics;
 mod fits;
 pub mod level;
+mod mean;
 mod memory;
 mod noise;
 mod own_mesh;
@@ -50,6 +51,7 @@ pub mod progress;
 pub mod run;
 mod scene;
 pub mod solver;
+pub mod spent;
 pub mod study;
 pub mod subject;
 pub mod table;

@@ -1,11 +1,9 @@
 //! One run: what was tried, how far off it was, and what it has cost.
 
-use crate::memory;
 use crate::solver::Solver;
-use cloth_fit::simulation::{Counters, Meter};
+use crate::spent::Spent;
 use cloth_sim::equilibrium::Tolerance;
 use cloth_sim::material::Model;
-use std::time::Instant;
 
 /// What a run belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,28 +48,6 @@ impl std::fmt::Display for Ending {
             Self::Failed(why) => why,
         })
     }
-}
-
-/// What a run has cost.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Spent {
-    /// Wall time, s.
-    pub seconds: f64,
-    /// Equilibria sought, Newton steps, factorisations.
-    pub counters: Counters,
-    /// Largest resident memory of the program during the run, MiB; `None` where the system does not tell.
-    pub peak_memory_mib: Option<f64>,
-}
-
-/// Does something, and tells what it has cost.
-pub(crate) fn spend<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, Spent) {
-    memory::reset_peak();
-    let before = meter.read();
-    let clock = Instant::now();
-    let done = work();
-    let seconds = clock.elapsed().as_secs_f64();
-    let counters = meter.read().since(&before);
-    (done, Spent { seconds, counters, peak_memory_mib: memory::peak_mib() })
 }
 
 /// One row of `study.csv`. Errors are `None` where there is nothing to compare.
@@ -141,10 +117,4 @@ impl Run {
     pub fn failed(&self) -> bool {
         matches!(self.ending, Ending::Failed(_))
     }
-}
-
-/// The root of the mean of squares; `None` of nothing.
-pub(crate) fn root_mean_square(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
-    (count > 0.0).then(|| (sum / count).sqrt())
 }

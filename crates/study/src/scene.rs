@@ -2,7 +2,8 @@
 
 use crate::memory;
 use crate::physical::Reference;
-use crate::run::{Ending, Spent};
+use crate::run::Ending;
+use crate::spent::Spent;
 use cloth_fit::error::{Error, Result};
 use cloth_fit::frame::{Kind, MeasurementSet};
 use cloth_fit::replica::{Replica, ReplicaFrame};

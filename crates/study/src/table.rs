@@ -1,7 +1,8 @@
 //! `study.csv`, `ablation.csv`, and what `--json` prints.
 
 use crate::ablation::Ablated;
-use crate::run::{Run, Spent};
+use crate::run::Run;
+use crate::spent::Spent;
 use crate::study::Study;
 use cloth_sim::equilibrium::Tolerance;
 use serde_json::{Map, Value, json};

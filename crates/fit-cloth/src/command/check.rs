@@ -1,9 +1,10 @@
 //! `fit-cloth check`: whether curves can be simulated, and the nearest that can.
 
 use crate::failure::Failure;
+use crate::options::Reading;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::subject::{Reading, Source, Subject, read};
+use crate::subject::{Source, Subject, read};
 use crate::telling::{Telling, tell};
 use crate::text;
 use clap::Args;
@@ -43,7 +44,7 @@ pub struct CheckOptions {
 /// # Errors
 /// A bad file; a curve that cannot be repaired; what the operating system refuses.
 pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
-    let (source, subjects) = read(&options.file, &options.reading)?;
+    let (source, subjects) = read(&options.file, options.reading.component(), options.reading.model())?;
     let repairs = match &options.repair {
         Some(out) => Some(write_repairs(options, out, source, &subjects)?),
         None => None,

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use cloth_fit::stage::{Constraints, Variant};
-use cloth_sim::material::{Compression, Model};
+use cloth_sim::material::{Component, Compression, Model};
 use cloth_study::extent::Topic;
 
 /// One model, or all.
@@ -87,6 +87,46 @@ impl From<CompressionChoice> for Compression {
             CompressionChoice::ZeroStrain => Self::ZeroStrain,
             CompressionChoice::None => Self::None,
         }
+    }
+}
+
+/// One of the six components.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ComponentChoice {
+    /// Stretch along weft
+    StretchWeft,
+    /// Stretch along warp
+    StretchWarp,
+    /// Shear between the yarns
+    Shear,
+    /// Bending along weft
+    BendWeft,
+    /// Bending along warp
+    BendWarp,
+    /// Bending along neither
+    BendDiagonal,
+}
+
+impl From<ComponentChoice> for Component {
+    fn from(choice: ComponentChoice) -> Self {
+        Self::ALL[choice as usize]
+    }
+}
+
+/// One model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TableModel {
+    /// Green strain, hinges
+    Stvk,
+    /// Engineering strain, hinges
+    SoftConstraint,
+    /// Engineering strain of springs
+    Springs,
+}
+
+impl From<TableModel> for Model {
+    fn from(choice: TableModel) -> Self {
+        Self::ALL[choice as usize]
     }
 }
 

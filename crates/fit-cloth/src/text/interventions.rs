@@ -1,4 +1,4 @@
-//! What helped along.
+//! What helped solves and fits along.
 
 use super::list::list;
 use cloth_fit::interventions::Interventions;

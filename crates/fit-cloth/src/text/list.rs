@@ -1,4 +1,4 @@
-//! Lists.
+//! Lists within a sentence.
 
 use std::fmt::Display;
 

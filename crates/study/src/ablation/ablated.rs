@@ -1,6 +1,7 @@
 //! A part, with and without it: a row of `ablation.csv`.
 
-use crate::run::{Ending, Spent};
+use crate::run::Ending;
+use crate::spent::Spent;
 
 /// One row of `ablation.csv`: a part, with and without it.
 #[derive(Debug, Clone, PartialEq)]

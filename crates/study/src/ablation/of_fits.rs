@@ -3,9 +3,9 @@
 use super::ablated::Ablated;
 use crate::extent::Extent;
 use crate::fits::{Fitted, Trial, fit};
+use crate::mean::root_mean_square;
 use crate::physical::{Reference, between};
 use crate::progress::Progress;
-use crate::run::root_mean_square;
 use crate::solver::{Solver, damped};
 use crate::subject::Subject;
 use cloth_fit::refine::GrowthRule;

@@ -1,9 +1,10 @@
 //! A curve that is edited: from its file and back.
 
 use crate::failure::Failure;
+use crate::options::Reading;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::subject::{Reading, Source, Subject, read};
+use crate::subject::{Source, Subject, read};
 use crate::telling::{Telling, tell, warn};
 use cloth_fit::curve_edit::largest_stress;
 use cloth_fit::error::Error;
@@ -16,7 +17,7 @@ use std::path::Path;
 
 /// The one curve to edit.
 pub(super) fn one(path: &Path, reading: &Reading) -> Result<(Source, Subject), Failure> {
-    let (source, mut subjects) = read(path, reading)?;
+    let (source, mut subjects) = read(path, reading.component(), reading.model())?;
     match (subjects.pop(), subjects.is_empty()) {
         (Some(subject), true) => Ok((source, subject)),
         (last, _) => {
