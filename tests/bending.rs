@@ -9,9 +9,9 @@
 //! The flexural rigidity comes back within 3 % up to Γ = 30, within 6 % at 100, without noise; with 0.075 mm within 10 %.
 //! So does a moment law that is no straight line, as the relative L2 error over the visited range.
 
-use cloth_fit::frame::Kind;
+use cloth_data::frame::Kind;
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::knowledge::Knowledge;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, between_rows};

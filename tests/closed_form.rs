@@ -11,8 +11,8 @@
 //! A law whose stiffness falls and rises again, so that a line is no better than a constant, gets its points.
 //! For a truth that the curve can represent, the 95 % band holds it for 90–99 % of rows and seeds.
 
-use cloth_fit::frame::MeasurementSet;
-use cloth_fit::report::StageReport;
+use cloth_data::frame::MeasurementSet;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::stretch::fit;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};

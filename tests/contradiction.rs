@@ -1,11 +1,11 @@
 //! A sequence that contradicts itself costs the curves that it alone shows, and no other.
 
-use cloth_fit::error::Error;
-use cloth_fit::frame::MeasurementSet;
+use cloth_data::error::Error;
+use cloth_data::frame::MeasurementSet;
+use cloth_data::io::read_set;
+use cloth_data::rig::KnownFabric;
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::io::read_set;
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::rig::KnownFabric;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::Component;
 use std::path::Path;

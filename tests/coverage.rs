@@ -16,12 +16,12 @@
 //! Averaged over 201 rows and 100 seeds the share is 90–99 %; 20 seeds on fewer nodes are within 85–100 %. What earlier
 //! stages do not know matters: left out, the band of the bias strip holds the truth in 12–15 %.
 
-use cloth_fit::frame::{Kind, Sequence};
+use cloth_data::frame::{Kind, Sequence};
+use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_fit::incremental::{Stage, fit};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::StageReport;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{self, Settings, Variant, Watch};
-use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Compression, Curves, Model};

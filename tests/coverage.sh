@@ -9,17 +9,17 @@ folder=target/coverage
 mkdir -p "$folder"
 # Build scripts are instrumented too, and leave their counts here.
 trap 'rm -f build_rs_cov.profraw' EXIT
-cargo tarpaulin --engine llvm --skip-clean --locked --lib -p cloth-sim -p cloth-fit -p cloth-scene -p fit-cloth \
+cargo tarpaulin --engine llvm --skip-clean --locked --lib -p cloth-sim -p cloth-data -p cloth-fit -p cloth-scene -p fit-cloth \
     --timeout 900 --target-dir "$folder" --out Lcov --output-dir "$folder" > "$folder/log" 2>&1 ||
     { tail -n 30 "$folder/log" >&2; exit 1; }
 
 awk -F '[:,]' -v root="$PWD/" '
     function group(file) {
         if (file ~ /(^|\/)tests(\/|\.rs)/) return ""
-        if (file ~ /^crates\/fit\/src\/(io|curve_file|material|material_file|strip)(\/|\.rs)/) return "readers"
+        if (file ~ /^crates\/data\/src\/(io|curve_file|points|strip)(\/|\.rs)/ || file ~ /^crates\/fit\/src\/material(\/|\.rs)/) return "readers"
         if (file ~ /^crates\/scene\/src\/scene(\/|\.rs)/) return "readers"
         if (file ~ /^crates\/sim\/src\/curve(\/|\.rs)/) return "curves"
-        if (file ~ /^crates\/fit\/src\/(least_squares|gauss_newton)(\/|\.rs)/) return "least squares"
+        if (file ~ /^crates\/fit\/src\/optimise\/(least_squares|gauss_newton)(\/|\.rs)/) return "least squares"
         return ""
     }
     $1 == "SF" { file = $2; sub("^" root, "", file); of = group(file); count = run = 0; missed = "" }

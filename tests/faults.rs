@@ -13,13 +13,13 @@
 //! cargo test -p fit-cloth-tests --test main -- faults::full --ignored --nocapture
 //! ```
 
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::io::{read_set, write_set};
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::io::{read_set, write_set};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::Sample;
+use cloth_fit::judge::verdict::{Grade, of_stage};
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::Sample;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::verdict::{Grade, of_stage};
 use cloth_sim::material::Component;
 use fit_cloth_tests::fault::{Change, Fault, Field};
 use nalgebra::Vector3;
@@ -52,7 +52,7 @@ struct Clean {
     report: FitReport,
 }
 
-fn fitted(set: &MeasurementSet, stages: &[Stage], nodes: usize) -> cloth_fit::error::Result<FitReport> {
+fn fitted(set: &MeasurementSet, stages: &[Stage], nodes: usize) -> cloth_data::error::Result<FitReport> {
     let settings = Settings { nodes: Some([nodes; 2]), ..Settings::default() };
     fit(set, stages, &Knowledge::default(), &settings, &mut Watch::default())
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod architecture;
 mod bending;
 mod closed_form;
 mod contradiction;

@@ -9,11 +9,11 @@
 //!
 //! Six sequences of every fixture, with all their frames, on 13×13 nodes.
 
-use cloth_fit::frame::{Kind, MeasurementSet, Sequence};
+use cloth_data::frame::{Kind, MeasurementSet, Sequence};
+use cloth_data::io::read_set;
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::io::read_set;
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::Sample;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::Sample;
 use cloth_fit::stage::stretch::fit as fit_stretch;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};

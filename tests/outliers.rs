@@ -7,12 +7,12 @@
 //!
 //! Relative L2 error of the stress: with `robust` at 3 below 1.5 % for forces, below 1 % for vertices; without 8 and 2 %.
 
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::inspection::inspect;
+use cloth_data::io::read_set;
 use cloth_fit::incremental::{Stage, fit};
-use cloth_fit::inspection::inspect;
-use cloth_fit::io::read_set;
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::StageReport;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, SIDE, between_rows};

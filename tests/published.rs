@@ -10,14 +10,14 @@
 //! Without that every other difference leaves the rigidity within 5 %, but for a sheet that does not bend as a cylinder: a
 //! fifth too stiff.
 
-use cloth_fit::frame::Kind;
-use cloth_fit::gauss_newton::{Globalisation, Options};
+use cloth_data::frame::Kind;
+use cloth_fit::equilibria::SolveStart;
 use cloth_fit::incremental::{Stage, fit};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::refine::GrowthRule;
-use cloth_fit::replica::TableHold;
-use cloth_fit::simulation::SolveStart;
+use cloth_fit::optimise::gauss_newton::{Globalisation, Options};
+use cloth_fit::stage::GrowthRule;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Constraints, FirstStiffness, Settings, Variant, Watch};
+use cloth_fit::twin::replica::TableHold;
 use cloth_sim::equilibrium::{Method, Tolerance};
 use cloth_sim::material::Component;
 use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, between_rows};

@@ -10,10 +10,10 @@
 //! The stress comes back within 1 % without noise and within 2 % with it (relative L2 over the visited range), whatever
 //! else the sequence brings: weight, noise in the clips' poses, holes in the shapes, hysteresis.
 
-use cloth_fit::frame::{Kind, MeasurementSet, Phase};
-use cloth_fit::prediction::predict;
-use cloth_fit::report::StageReport;
-use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_data::frame::{Kind, MeasurementSet, Phase};
+use cloth_data::rig::{KnownFabric, Rig};
+use cloth_fit::judge::prediction::predict;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::stretch::fit;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Curves, Model};

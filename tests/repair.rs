@@ -6,7 +6,7 @@
 //! passes the check that found the defects, and a repair of it changes nothing, to the bit. Where the stress between the
 //! points is negative on the whole, no stiffness is nearest, and that is said.
 
-use cloth_fit::repair::{Unrepairable, repair};
+use cloth_fit::judge::repair::{Unrepairable, repair};
 use cloth_sim::curve::soundness::{Context, MEMBRANE_STIFFNESS, check};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use fit_cloth_tests::random_curve::random_curve;

@@ -1,7 +1,7 @@
 //! The virtual rig: its fabrics are what is known of them, its measurements what they claim to be.
 
-use cloth_fit::frame::{Frame, Kind, MeasurementSet, Phase, Sequence};
-use cloth_fit::rig::{KINDS, KnownFabric, Rig};
+use cloth_data::frame::{Frame, Kind, MeasurementSet, Phase, Sequence};
+use cloth_data::rig::{KINDS, KnownFabric, Rig};
 use cloth_sim::curve::stability_rows;
 use cloth_sim::mesh::Diagonals;
 use nalgebra::{DVector, Vector3};

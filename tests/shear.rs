@@ -10,12 +10,12 @@
 //! of the stress over the visited range, for both triangle models. Where nobody saw the sheet it may have buckled: the band
 //! then holds this truth too, in 90 % of the range at least, and the verdict names bending.
 
+use cloth_data::io::read_set;
+use cloth_data::rig::KnownFabric;
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::io::read_set;
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::rig::KnownFabric;
+use cloth_fit::judge::verdict::{Grade, of_stage};
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::verdict::{Grade, of_stage};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::picture_frame::PictureFrame;
 use fit_cloth_tests::{coverage, stress_error};

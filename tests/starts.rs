@@ -7,9 +7,9 @@
 //! Stretch: 8(e^{10ε} − 1) to 25 % in uniform stretch, 3 mN. Shear: 60ε + 400ε³ in a picture frame, 3 mN. Bending: the heavy
 //! elastica at Γ = 30, along weft and on the bias, 0.075 mm.
 
-use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::StageReport;
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Plan, Settings, Watch, bend, fit, shear, stretch};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::UniformStretch;

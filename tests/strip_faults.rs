@@ -3,11 +3,11 @@
 //! Specimen: 0.2 × 0.05 m, 2000 ε + 20000 ε² N/m of engineering strain, noise of 5 mN, pulled by 20 mm in steps of 0.2 mm.
 //! Tolerance: stiffness at zero within 3 %, stress at 0.0495 within 1 % of 148.0 N/m.
 
+use cloth_data::notice::Severity;
+use cloth_data::strip::{Direction, Extension, FreeLength, Strip, StripTest, read_strip};
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::inspection::Severity;
-use cloth_fit::knowledge::Knowledge;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::strip::{Direction, Extension, FreeLength, Strip, StripTest, read_strip};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::weightless;
 use rand::{SeedableRng, rngs::StdRng};

@@ -17,8 +17,8 @@ pub mod random_curve;
 #[path = "support/strip.rs"]
 pub mod strip;
 
-use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
-use cloth_fit::report::Sample;
+use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
+use cloth_fit::stage::report::Sample;
 use cloth_sim::material::Model;
 use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::{Isometry3, Vector3};

@@ -10,7 +10,7 @@
 //! Parameters: the 1000 random curves of `repair.rs`, each as it is if it is sound, else repaired; 2 × 20 steps. Passes when
 //! every step ends at finite numbers, and the energy never exceeds that of the start by more than 1e-6 of its scale.
 
-use cloth_fit::repair::repair;
+use cloth_fit::judge::repair::repair;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::curve::soundness::{Context, MEMBRANE_STIFFNESS, check};
 use cloth_sim::dynamics::{Motion, Settings, Status, Step};

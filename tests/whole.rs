@@ -10,13 +10,13 @@
 //! instruments and the friction of the cords within 2, 5 and 10 %. The two motions that no fit
 //! saw are met within 10 % of the range of their measure.
 
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::rig::{KnownFabric, Rig};
 use cloth_fit::incremental::{FitReport, Stage, fit};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::StageReport;
-use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_fit::judge::validation::validate;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::validation::validate;
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::stress_error;

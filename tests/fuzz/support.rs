@@ -2,10 +2,10 @@
 
 #![forbid(unsafe_code)]
 
-use cloth_fit::error::{Error, Result};
-use cloth_fit::frame::{Frame, Sequence};
-use cloth_fit::io::{read_sequence, write_sequence};
-use cloth_fit::strip::Column;
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::{Frame, Sequence};
+use cloth_data::io::{read_sequence, write_sequence};
+use cloth_data::strip::Column;
 use cloth_sim::curve::StiffnessCurve;
 use std::fs;
 use std::path::PathBuf;

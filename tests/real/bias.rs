@@ -26,14 +26,14 @@
 //! angle, and yields more: with the fitted curve γ runs from 25° at the centre to 32° at the zone's ends where eq. 13 says
 //! 29°. Finer cells (21 × 61 nodes), soft constraints and yarns of 1e6 N/m change it by 0.4° at most: it is the least energy.
 
-use cloth_fit::frame::{Frame, Kind, MeasurementSet, Sequence};
+use cloth_data::frame::{Frame, Kind, MeasurementSet, Sequence};
+use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
+use cloth_fit::equilibria::Settled;
 use cloth_fit::incremental::{Stage, fit};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::prediction::predict;
-use cloth_fit::simulation::Settled;
-use cloth_fit::specimen::Specimen;
+use cloth_fit::judge::prediction::predict;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
+use cloth_fit::twin::specimen::Specimen;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
 use cloth_sim::mesh::Diagonals;

@@ -16,11 +16,11 @@
 //! force, in nine samples of ten. How far the repeats themselves differ (videos 4 and 5 from the mean of 1–3) stands
 //! beside it. The narrowing (pins across, at the largest strain) is outside these models and only printed.
 
-use cloth_fit::frame::{MeasurementSet, Sequence};
-use cloth_fit::prediction::predict;
-use cloth_fit::report::{ForceRow, SequenceReport};
+use cloth_data::frame::{MeasurementSet, Sequence};
+use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
+use cloth_fit::judge::prediction::predict;
+use cloth_fit::stage::report::{ForceRow, SequenceReport};
 use cloth_fit::stage::{Settings, Watch, kinds_of, stretch};
-use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::{data, weightless};
 use std::fs::{read_to_string, write};

@@ -9,8 +9,8 @@
 //! follow from it: both are shown, and not asked for. Options are the defaults, the same for all; the Jacobian is exact
 //! (complex steps).
 
-use cloth_fit::gauss_newton::{Domain, Evaluation, Options, Outcome, Residuals, minimise};
-use cloth_fit::uncertainty::{Covariance, Scatter};
+use cloth_fit::optimise::gauss_newton::{Domain, Evaluation, Options, Outcome, Residuals, minimise};
+use cloth_fit::optimise::uncertainty::{Covariance, Scatter};
 use fit_cloth_tests::data;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde_json::Value;

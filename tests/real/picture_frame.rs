@@ -13,12 +13,12 @@
 //! diagonals within 1e-8. Wool: five control points at most, force residual ≤ 0.6 % of the largest force, stress within 1 %
 //! (relative L2 over the frames' strains). Constant: simulated forces within 1e-8, and so the fitted stiffness.
 
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::measure::{clamped, effective_shear};
 use cloth_fit::incremental::{Stage, fit};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::measure::{clamped, effective_shear};
-use cloth_fit::prediction::predict;
-use cloth_fit::report::StageReport;
+use cloth_fit::judge::prediction::predict;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::equilibrium::{self, Tolerance};

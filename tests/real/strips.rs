@@ -13,11 +13,11 @@
 //! most, else the defaults. RMS of measured − simulated force ≤ 1 % of the largest force, in warp (L) and weft (W), for
 //! every model.
 
-use cloth_fit::frame::{MeasurementSet, Sequence};
-use cloth_fit::io::read_set;
-use cloth_fit::report::StageReport;
+use cloth_data::frame::{MeasurementSet, Sequence};
+use cloth_data::io::read_set;
+use cloth_data::strip::{Added, Direction, Extension, Sample, StripTest, add_to_set, read_strip};
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Watch, stretch};
-use cloth_fit::strip::{Added, Direction, Extension, Sample, StripTest, add_to_set, read_strip};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::{data, weightless};
 use serde_json::Value;

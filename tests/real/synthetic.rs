@@ -12,8 +12,8 @@
 //! Parameters: five control points at most; force residual ≤ 0.7 % of the largest force, stress within 2 % (relative L2
 //! over the frames' strains).
 
+use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_fit::stage::{Settings, Watch, stretch};
-use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::{data, weightless};
 use std::fs::read_to_string;

@@ -14,9 +14,9 @@
 //! 3 % for warp on 0.20 m (the reference's two columns differ by 2.8 % there: forces small against the first row); drop
 //! within 1 % on 48 elements along the height.
 
-use cloth_fit::check::context;
-use cloth_fit::curve_file::CurveFile;
-use cloth_fit::strip::{Extension, ForceTable, Measure, read_force_table};
+use cloth_data::curve_file::CurveFile;
+use cloth_data::strip::{Extension, ForceTable, Measure, read_force_table};
+use cloth_fit::material::check::context;
 use cloth_sim::curve::soundness::check;
 use cloth_sim::equilibrium::{Settings, Solver, Tolerance};
 use cloth_sim::material::{Component, Compression, Curves, Model};

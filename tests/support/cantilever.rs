@@ -1,7 +1,7 @@
 //! A bending test that no cloth code made: a square pushed off a table, of which every frame is a heavy elastica.
 
 use crate::elastica::Elastica;
-use cloth_fit::frame::{Fabric, Frame, Kind, MeasurementSet, Noise, Sequence, Table};
+use cloth_data::frame::{Fabric, Frame, Kind, MeasurementSet, Noise, Sequence, Table};
 use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::{Rotation2, Vector2, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
@@ -134,9 +134,9 @@ pub fn between_rows(rows: impl IntoIterator<Item = usize>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cloth_fit::io::{read_set, write_set};
-    use cloth_fit::measure::{bend_profile, tip_deflection};
-    use cloth_fit::specimen::Specimen;
+    use cloth_data::io::{read_set, write_set};
+    use cloth_data::measure::{bend_profile, tip_deflection};
+    use cloth_fit::twin::specimen::Specimen;
 
     const RIGIDITY: f64 = 2e-5;
 

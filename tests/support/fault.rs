@@ -1,6 +1,6 @@
 //! Faults of the fields of a measured set, drawn from a seed: signs flipped, axes exchanged, values zeroed and scaled.
 
-use cloth_fit::frame::{Frame, MeasurementSet, Sequence};
+use cloth_data::frame::{Frame, MeasurementSet, Sequence};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::seq::{IndexedRandom, IteratorRandom};
 use rand::{Rng, rngs::StdRng};

@@ -1,7 +1,7 @@
 //! The wool sheet of 10 m × 10 m that Strohkorb 2019 hangs from two corners.
 
 use crate::{data, rows};
-use cloth_fit::io::{YarnAxes, read_mesh};
+use cloth_data::io::{YarnAxes, read_mesh};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Compression, Curves, Model};

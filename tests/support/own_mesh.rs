@@ -5,10 +5,10 @@
 //!                 known curves ────────▶
 //! ```
 
-use cloth_fit::frame::{Cord, Kind, MeasurementSet, Noise, Sequence};
-use cloth_fit::replica::Replica;
-use cloth_fit::simulation::{Objective, Settled, Simulation, SolveStart, Task};
+use cloth_data::frame::{Cord, Kind, MeasurementSet, Noise, Sequence};
+use cloth_fit::equilibria::{Objective, Settled, Simulation, SolveStart, Task};
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
+use cloth_fit::twin::replica::Replica;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{Point3, Vector3};

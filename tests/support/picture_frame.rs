@@ -1,7 +1,7 @@
 //! A shear test that no cloth code made: a square in a frame of four bars, sheared alike everywhere.
 
 use crate::weightless;
-use cloth_fit::frame::{Clip, Cord, Frame, Kind, MeasurementSet, Noise, Sequence};
+use cloth_data::frame::{Clip, Cord, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::{Isometry3, Matrix2, Translation3, UnitQuaternion, Vector2, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
@@ -168,8 +168,8 @@ pub fn diagonal(angle: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cloth_fit::io::{read_set, write_set};
-    use cloth_fit::measure::{aggregated_torque, clamped, clip_centres, effective_shear, pulls};
+    use cloth_data::io::{read_set, write_set};
+    use cloth_data::measure::{aggregated_torque, clamped, clip_centres, effective_shear, pulls};
     use cloth_sim::cloth::ForceScale;
     use cloth_sim::material::{Component, Model};
     use cloth_sim::samples::{Sample, linear_curves};

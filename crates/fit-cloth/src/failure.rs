@@ -1,6 +1,6 @@
 //! Why a command could not be carried out: its words and its exit code.
 
-use cloth_fit::error::Error;
+use cloth_data::error::Error;
 use std::error::Error as _;
 use std::io;
 

@@ -4,8 +4,8 @@
 //! program ends, or was never begun.
 
 use crate::failure::with_option;
-use cloth_fit::error::Error;
-use cloth_fit::store::{OutputFolder, Recalled, write_file};
+use cloth_data::error::Error;
+use cloth_data::store::{OutputFolder, Recalled, write_file};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};

@@ -10,9 +10,9 @@ pub use fit::Fit;
 pub use sequences::Frames;
 
 use crate::text::Ranking;
-use cloth_fit::error::{Error, Result};
-use cloth_fit::io::read_json;
-use cloth_fit::store::{refuse_link, write_file};
+use cloth_data::error::{Error, Result};
+use cloth_data::io::read_json;
+use cloth_data::store::{refuse_link, write_file};
 use minijinja::{AutoEscape, Environment, context};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

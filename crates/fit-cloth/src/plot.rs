@@ -23,12 +23,12 @@ mod view;
 mod writing;
 
 use crate::shown::profiles;
-use cloth_fit::error::{Error, Result};
-use cloth_fit::frame::MeasurementSet;
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::MeasurementSet;
+use cloth_data::store::write_file;
 use cloth_fit::incremental::FitReport;
-use cloth_fit::report::SequenceReport;
-use cloth_fit::store::write_file;
-use cloth_fit::validation::{Validated, Validation};
+use cloth_fit::judge::validation::{Validated, Validation};
+use cloth_fit::stage::report::SequenceReport;
 use cloth_scene::scene::Scene;
 use cloth_scene::simulation::Simulation;
 use cloth_sim::material::Model;

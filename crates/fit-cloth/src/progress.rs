@@ -1,6 +1,6 @@
 //! The progress line on standard error; nothing where that is not a terminal.
 
-use cloth_fit::simulation::Meter;
+use cloth_fit::equilibria::Meter;
 use cloth_fit::stage::{Event, Watch};
 use indicatif::{ProgressBar, ProgressStyle, WeakProgressBar};
 use std::sync::{Arc, Mutex, PoisonError};

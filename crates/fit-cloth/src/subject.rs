@@ -1,9 +1,9 @@
 //! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
 
-use cloth_fit::check::context;
-use cloth_fit::curve_file::{CurveFile, Kind};
-use cloth_fit::error::{Error, Result};
-use cloth_fit::material_file::MaterialFile;
+use cloth_data::curve_file::{CurveFile, Kind};
+use cloth_data::error::{Error, Result};
+use cloth_fit::material::check::context;
+use cloth_fit::material::file::MaterialFile;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::curve::soundness::{Context, Finding, check};
 use cloth_sim::material::{Component, Compression, Model};

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use cloth_fit::io::table::lines_above_header;
+use cloth_data::io::table::lines_above_header;
 use cloth_sim::curve::soundness::Finding;
 use cloth_sim::material::Component;
 use serde_json::Value;

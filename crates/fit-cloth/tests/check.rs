@@ -4,8 +4,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may stop where they cannot go on")]
 
-use cloth_fit::curve_file::CurveFile;
-use cloth_fit::material_file::MaterialFile;
+use cloth_data::curve_file::CurveFile;
+use cloth_fit::material::file::MaterialFile;
 use cloth_sim::curve::NegativeStrain;
 use cloth_sim::material::{Component, Model};
 use serde_json::Value;

@@ -5,10 +5,10 @@
 
 mod support;
 
+use cloth_data::io::write_set;
 use cloth_fit::incremental::{self, Stage};
-use cloth_fit::io::write_set;
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::material_file::MaterialFile;
+use cloth_fit::material::file::MaterialFile;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
 use fit_cloth::text;

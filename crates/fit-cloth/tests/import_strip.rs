@@ -5,8 +5,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may stop where they cannot go on")]
 
-use cloth_fit::frame::Kind;
-use cloth_fit::io::read_set;
+use cloth_data::frame::Kind;
+use cloth_data::io::read_set;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

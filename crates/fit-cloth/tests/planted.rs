@@ -9,7 +9,7 @@
 #[allow(dead_code, reason = "other tests need the rest")]
 mod support;
 
-use cloth_fit::io::write_set;
+use cloth_data::io::write_set;
 use std::fs::{self, Permissions};
 use std::io::Read;
 use std::os::unix::fs::{PermissionsExt, chown, symlink};
@@ -189,7 +189,7 @@ fn a_work_folder_that_others_own_or_may_write_is_not_used() {
 #[test]
 fn a_run_works_where_nobody_else_can_enter() {
     let folder = tempfile::tempdir().unwrap();
-    let claimed = cloth_fit::store::OutputFolder::claim(&folder.path().join("out")).unwrap();
+    let claimed = cloth_data::store::OutputFolder::claim(&folder.path().join("out")).unwrap();
     let mode = fs::metadata(claimed.work()).unwrap().permissions().mode();
     assert_eq!(mode & 0o777, 0o700);
 }

@@ -4,7 +4,7 @@
 
 mod support;
 
-use cloth_fit::io::write_set;
+use cloth_data::io::write_set;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

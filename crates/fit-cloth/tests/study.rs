@@ -113,7 +113,7 @@ fn tables_hold_together(study: &Study) {
 fn the_truth_behind_a_set_is_known_by_its_name() {
     let extent = smallest();
     let mut set = Subject::built_in(&Extent { rig_nodes: 13, ..extent }).unwrap().set;
-    let named = |name: &str, set: &mut cloth_fit::frame::MeasurementSet| {
+    let named = |name: &str, set: &mut cloth_data::frame::MeasurementSet| {
         set.fabric.name = name.into();
         let subject = Subject::of_set(set.clone()).unwrap();
         (subject.is_known, subject.fabric.name)

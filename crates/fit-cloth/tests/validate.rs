@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use cloth_fit::frame::Kind;
-use cloth_fit::io::read_set;
-use cloth_fit::prediction::predict;
+use cloth_data::frame::Kind;
+use cloth_data::io::read_set;
+use cloth_fit::judge::prediction::predict;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Model};

@@ -5,14 +5,14 @@
 //! sensitivities and by finite differences.
 #![allow(clippy::print_stdout)]
 
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::rig::{KnownFabric, Rig};
 use cloth_fit::incremental::{self, FitReport, Stage};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::material_file::MaterialFile;
-use cloth_fit::replica::Replica;
-use cloth_fit::report::StageReport;
-use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_fit::material::file::MaterialFile;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Plan, Settings, Watch, bend, shear, stretch};
+use cloth_fit::twin::replica::Replica;
 use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::element::Curvature;
 use cloth_sim::equilibrium::{self, Solver, Tolerance};

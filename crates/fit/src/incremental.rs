@@ -8,12 +8,14 @@
 //!
 //! Source: Miguel et al. 2012, §5.2.
 
-use crate::error::Result;
-use crate::frame::{Kind, MeasurementSet};
-use crate::inspection::{Notice, inspect};
-use crate::knowledge::Knowledge;
-use crate::report::{Basis, Level, SequenceReport, StageReport};
+use crate::stage::Level;
+use crate::stage::knowledge::Knowledge;
+use crate::stage::report::{Basis, SequenceReport, StageReport};
 use crate::stage::{self, Plan, Settings, Variant, Watch, bend, shear, stretch};
+use cloth_data::error::Result;
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::inspection::inspect;
+use cloth_data::notice::Notice;
 use cloth_sim::material::{Component, Curves, Model};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -87,6 +89,11 @@ impl Failure {
 }
 
 impl FitReport {
+    /// Components that no sequence shows, or not well enough.
+    pub fn missing(&self) -> Vec<Component> {
+        Component::ALL.into_iter().filter(|&component| !self.knowledge.knows(component)).collect()
+    }
+
     /// The last stage over a component; `None` if no sequence shows it.
     pub fn stage(&self, component: Component) -> Option<&StageReport> {
         self.stages.iter().rev().find(|stage| stage.components.contains(&component))

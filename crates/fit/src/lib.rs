@@ -21,38 +21,25 @@
 //!
 //! | module | role |
 //! |---|---|
-//! | [`frame`] | what was measured: set, sequence, frame |
-//! | [`io`], [`strip`], [`rig`] | where it comes from: files, a tensile machine's table, a known cloth |
-//! | [`inspection`] | where a measurement contradicts itself, before anything is simulated |
-//! | [`curve_file`], [`curve_edit`] | a curve as a table; curves made wider, stronger, longer |
-//! | [`check`], [`repair`] | what would spoil a simulation, and the nearest curve that does not |
-//! | [`specimen`], [`replica`] | a simulation grid over the specimen; its cloth, what holds it, its frames |
-//! | [`gap`] | a start without any simulation |
-//! | [`simulation`] | equilibria of all frames, residuals, sensitivities |
-//! | [`least_squares`], [`gauss_newton`] | one linearised step under constraints; the outer loop |
-//! | [`robust`] | residuals of outliers, bent |
-//! | [`refine`] | a curve grows control points |
-//! | [`uncertainty`], [`knowledge`] | noise, misfit, bands; what one stage does not know, carried on to the next |
+//! | [`cloth_data`] | what was measured, and where it contradicts itself |
+//! | [`twin`] | a simulated replica of each sequence: grid, cloth, what holds it, its frames |
+//! | [`equilibria`] | equilibria of all frames, residuals, sensitivities |
+//! | [`optimise`] | a linearised step under constraints, the outer loop, outliers, uncertainty |
 //! | [`stage`], [`incremental`] | one curve, from set to report; all of them in order |
-//! | [`prediction`], [`compare`] | tests that a fit did not see; models and variants side by side |
-//! | [`measure`], [`validation`] | a frame summed up in one figure; motions and samples that no fit saw |
-//! | [`material`] | what a simulation must know of a fabric, from a fit or from hand
-//! | [`interventions`] | what was clamped, extrapolated, left out or tried again on the way, counted |
-//! | [`shapes`] | every frame's shape, simulated beside seen, to look at |
-//! | [`verdict`] | how far to trust a curve: green, amber, red |
-//! | [`report`], [`material_file`], [`result`], [`store`] | what was found, as data and as files |
-//! | [`error`] | what is wrong with an input, and where |
+//! | [`judge`] | how far to trust a curve; tests that no fit saw; models side by side; what would spoil a simulation |
+//! | [`material`] | what a simulation must know of a fabric, from a fit or from hand |
+//! | [`result`] | what was found, as files |
 //!
 //! # Example
 //!
 //! A known cloth is measured on the virtual rig; its curves come back and go into a file.
 //!
 //! ```
-//! use cloth_fit::frame::Kind;
+//! use cloth_data::frame::Kind;
 //! use cloth_fit::incremental::{self, Stage};
-//! use cloth_fit::knowledge::Knowledge;
-//! use cloth_fit::material_file::MaterialFile;
-//! use cloth_fit::rig::{KnownFabric, Rig};
+//! use cloth_fit::stage::knowledge::Knowledge;
+//! use cloth_fit::material::file::MaterialFile;
+//! use cloth_data::rig::{KnownFabric, Rig};
 //! use cloth_fit::stage::{Settings, Watch};
 //! use cloth_sim::material::Component;
 //! # let text = include_str!("../../../fixtures/fabrics/cotton-denim.toml");
@@ -73,44 +60,14 @@
 //! }
 //! let file = MaterialFile::new(&set, &settings, &report, None);
 //! assert!(file.to_json().contains("stiffness_n_per_m") && file.curves()? == *report.curves());
-//! # Ok::<(), cloth_fit::error::Error>(())
+//! # Ok::<(), cloth_data::error::Error>(())
 //! ```
 
-mod boundary;
-pub mod check;
-pub mod compare;
-pub mod curve_edit;
-pub mod curve_file;
-pub mod error;
-pub mod frame;
-pub mod gap;
-pub mod gauss_newton;
+pub mod equilibria;
 pub mod incremental;
-pub mod inspection;
-pub mod interventions;
-pub mod io;
-pub mod knowledge;
-pub mod least_squares;
-mod locator;
+pub mod judge;
 pub mod material;
-pub mod material_file;
-pub mod measure;
-mod placement;
-pub mod prediction;
-pub mod refine;
-pub mod repair;
-pub mod replica;
-pub mod report;
+pub mod optimise;
 pub mod result;
-pub mod rig;
-pub mod robust;
-pub mod shapes;
-pub mod simulation;
-pub mod specimen;
 pub mod stage;
-pub mod store;
-pub mod strip;
-mod summary;
-pub mod uncertainty;
-pub mod validation;
-pub mod verdict;
+pub mod twin;

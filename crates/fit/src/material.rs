@@ -1,12 +1,13 @@
 //! A material to simulate: that of a fit, a known fabric, or one written by hand.
 
+pub mod check;
+pub mod file;
 mod hand_written;
-pub(crate) mod points;
 
-use crate::error::{Error, Result};
-use crate::io::TomlFile;
-use crate::material_file::MaterialFile;
-use crate::rig::KnownFabric;
+use crate::material::file::MaterialFile;
+use cloth_data::error::{Error, Result};
+use cloth_data::io::TomlFile;
+use cloth_data::rig::KnownFabric;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use hand_written::HandWritten;
@@ -58,7 +59,10 @@ impl Material {
                 curves,
             });
         }
-        file.value::<HandWritten>()?.material(path, &file)
+        let written = file.value::<HandWritten>()?;
+        let curves = written.curves(path, &file)?;
+        let HandWritten { name, areal_density_kg_m2: areal_density, model, compression, .. } = written;
+        Ok(Self { name, areal_density, model, compression, curves })
     }
 
     /// The same material with another rule for compression.

@@ -5,11 +5,11 @@ mod validation;
 
 pub use validation::write_validation;
 
-use crate::error::{Error, Result};
 use crate::incremental::FitReport;
-use crate::io::shown;
-use crate::material_file::MaterialFile;
-use crate::store::write_file;
+use crate::material::file::MaterialFile;
+use cloth_data::error::{Error, Result};
+use cloth_data::io::shown;
+use cloth_data::store::write_file;
 use cloth_sim::material::Model;
 use std::path::{Path, PathBuf};
 
@@ -74,10 +74,10 @@ pub fn check_output(folder: &Path) -> Result<()> {
 const WRITTEN: [&str; 7] =
     ["material.json", "curves", "plots", "residuals.csv", "forces.csv", "report.json", "report.html"];
 
-/// What stands in the folder of a [comparison](crate::compare).
+/// What stands in the folder of a [comparison](crate::judge::compare).
 const COMPARED: [&str; 4] = ["compare.csv", "compare.json", "report.json", "report.html"];
 
-/// What stands in the folder of a [validation](crate::validation).
+/// What stands in the folder of a [validation](crate::judge::validation).
 const VALIDATED: [&str; 5] = ["validation.json", "validation.csv", "measures.csv", "forces.csv", "plots"];
 
 /// What stands in the folder of a study.

@@ -10,262 +10,28 @@
 
 pub mod bend;
 mod course;
+pub mod gap;
+mod growth;
+mod growth_rule;
+pub mod interventions;
+pub mod knowledge;
+mod level;
+mod plan;
+pub mod report;
+mod settings;
+pub mod shapes;
 pub mod shear;
 mod start;
 pub mod stretch;
+mod summary;
+mod watch;
 
-pub use course::{Plan, fit};
-pub use start::FirstStiffness;
+pub use course::fit;
+pub use growth::{Growth, domain, grow, refit};
+pub use growth_rule::{GrowthRule, Measure};
+pub use level::Level;
+pub use plan::{Plan, kinds_of, kinds_of_all};
+pub use settings::{Constraints, FirstStiffness, Settings, Variant};
 pub(crate) use start::{softest_bending, unyielding};
-
-use crate::error::{Error, Result};
-use crate::frame::Kind;
-use crate::gauss_newton::{Globalisation, Iteration, Options};
-use crate::refine::GrowthRule;
-use crate::replica::TableHold;
-use crate::simulation::{Meter, SolveStart};
-use cloth_sim::equilibrium;
-use cloth_sim::material::{Component, Compression, Model};
-use cloth_sim::mesh::Diagonals;
-use serde::{Deserialize, Serialize};
-use std::sync::Arc;
-
-/// The tests that show a component.
-pub fn kinds_of(component: Component) -> &'static [Kind] {
-    match component {
-        Component::StretchWeft => &[Kind::StretchWeft],
-        Component::StretchWarp => &[Kind::StretchWarp],
-        Component::Shear => &[Kind::Shear, Kind::StretchBias],
-        Component::BendWeft => &[Kind::BendWeft],
-        Component::BendWarp => &[Kind::BendWarp],
-        Component::BendDiagonal => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
-    }
-}
-
-/// The tests that show any of some components, each once.
-pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
-    let mut kinds: Vec<Kind> =
-        components.iter().flat_map(|&component| kinds_of(component)).copied().collect();
-    kinds.sort();
-    kinds.dedup();
-    kinds
-}
-
-/// What keeps a curve physical.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Constraints {
-    /// dσ/dε everywhere above a thousandth of the largest stiffness of the gap start.
-    #[default]
-    Stable,
-    /// Control values not negative: the published rule.
-    ControlPoints,
-}
-
-/// Which of a model's freedoms a fit uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Variant {
-    /// Nonlinear curves, weft and warp apart.
-    #[default]
-    Orthotropic,
-    /// Constant stiffness, weft and warp apart.
-    Linear,
-    /// Nonlinear curves, the same for weft and warp.
-    Isotropic,
-    /// Constant stiffness, the same for weft and warp.
-    LinearIsotropic,
-}
-
-impl Variant {
-    /// All variants.
-    pub const ALL: [Self; 4] = [Self::Orthotropic, Self::Linear, Self::Isotropic, Self::LinearIsotropic];
-
-    /// Constant stiffness.
-    pub fn is_linear(self) -> bool {
-        matches!(self, Self::Linear | Self::LinearIsotropic)
-    }
-
-    /// Weft and warp share their curves.
-    pub fn is_isotropic(self) -> bool {
-        matches!(self, Self::Isotropic | Self::LinearIsotropic)
-    }
-}
-
-impl std::fmt::Display for Variant {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(match self {
-            Self::Orthotropic => "orthotropic",
-            Self::Linear => "linear",
-            Self::Isotropic => "isotropic",
-            Self::LinearIsotropic => "linear-isotropic",
-        })
-    }
-}
-
-/// How a curve is fitted.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// The cloth model; default StVK.
-    pub model: Model,
-    /// Which of its freedoms are used; default all.
-    pub variant: Variant,
-    /// Columns and rows of the simulation's grid; default as many cells as 25×25 nodes have, near square.
-    pub nodes: Option<[usize; 2]>,
-    /// How its cells are split; default alternating: cells all split one way twist a sheet that is bent.
-    pub diagonals: Diagonals,
-    /// Most control points; default 5.
-    pub points: usize,
-    /// What keeps the curve physical; default stable.
-    pub constraints: Constraints,
-    /// Compression; default with the stiffness at zero strain.
-    pub compression: Compression,
-    /// How equilibria are found. Published: Levenberg–Marquardt, whose matrix serves the sensitivities too, to 10 µN.
-    pub equilibrium: equilibrium::Settings,
-    /// Where equilibria start; default at the frame's last one. Published: at the measured shape.
-    pub solve_start: SolveStart,
-    /// The stiffness that a stage starts from; default from the measurements. Published: not given.
-    pub first_stiffness: FirstStiffness,
-    /// What a table holds; default up to the second line past its edge. Published: what lies on it.
-    pub table: TableHold,
-    /// When more control points pay; default while they lower the root mean square residual by 1 %. Published: its square.
-    pub growth: GrowthRule,
-    /// Residuals above so many times the noise (where it is not given: the typical residual) count less; default `None`: all
-    /// count in full.
-    pub robust: Option<f64>,
-    /// Start every stage from this multiple of its own start value; default 1. For those who ask whether a fit depends on
-    /// where it starts.
-    pub start_factor: f64,
-    /// The outer loop; default a trust region, and full convergence. Published: a line search, until a step gains less than
-    /// 1 %.
-    pub outer: Options,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            model: Model::Stvk,
-            variant: Variant::Orthotropic,
-            nodes: None,
-            diagonals: Diagonals::Alternating,
-            points: 5,
-            constraints: Constraints::Stable,
-            compression: Compression::ZeroStrain,
-            equilibrium: equilibrium::Settings::default(),
-            solve_start: SolveStart::LastEquilibrium,
-            first_stiffness: FirstStiffness::FromMeasurements,
-            table: TableHold::default(),
-            growth: GrowthRule::default(),
-            robust: None,
-            start_factor: 1.0,
-            // A share of 1e-6 of the sum of squares, or of 1e-7 of the stiffnesses, is far below any noise.
-            outer: Options {
-                gain_tolerance: 1e-6,
-                step_tolerance: 1e-7,
-                max_iterations: 50,
-                ..Options::default()
-            },
-        }
-    }
-}
-
-impl Settings {
-    /// Most control points that the variant allows.
-    pub fn most_points(&self) -> usize {
-        if self.variant.is_linear() { 1 } else { self.points }
-    }
-
-    /// The published method of fitting, for the same model, variant, grid and compression. Each of these settings can be
-    /// changed alone, too.
-    ///
-    /// Source: Miguel et al. 2012, §5.1 and §5.2; what they leave open: docs/model.md, "The method as published".
-    pub fn as_published(self) -> Self {
-        Self {
-            constraints: Constraints::ControlPoints,
-            equilibrium: equilibrium::Settings {
-                method: equilibrium::Method::LevenbergMarquardt,
-                tolerance: equilibrium::Tolerance::Absolute(1e-5),
-                escape: false,
-                ..self.equilibrium
-            },
-            solve_start: SolveStart::Measured,
-            first_stiffness: FirstStiffness::Constant,
-            table: TableHold::PUBLISHED,
-            growth: GrowthRule::PUBLISHED,
-            robust: None,
-            outer: Options { globalisation: Globalisation::LineSearch, gain_tolerance: 0.01, ..self.outer },
-            ..self
-        }
-    }
-
-    /// True if these are the settings of [`Settings::as_published`].
-    pub fn is_as_published(&self) -> bool {
-        *self == self.clone().as_published()
-    }
-
-    /// Names the setting that cannot be.
-    ///
-    /// # Errors
-    /// No control point, or more than 50; no try at growth; fewer than 3 nodes a side or more than 1000.
-    pub fn validate(&self) -> Result<()> {
-        let setting = |field, found: String, expected: &str| {
-            Err(Error::Setting { field, found, expected: expected.into() })
-        };
-        if !(1..=50).contains(&self.points) {
-            return setting("points", self.points.to_string(), "1 to 50 control points");
-        }
-        if !self.robust.is_none_or(|limit| limit > 0.0 && limit.is_finite()) {
-            return setting("robust", format!("{:?}", self.robust), "a positive multiple of the noise, as 3");
-        }
-        if !(self.start_factor > 0.0 && self.start_factor.is_finite()) {
-            return setting("start_factor", self.start_factor.to_string(), "a positive number");
-        }
-        if self.growth.tries == 0 {
-            return setting("growth.tries", "0".into(), "at least 1");
-        }
-        match self.nodes {
-            Some(nodes) if nodes.iter().any(|side| !(3..=1000).contains(side)) => {
-                setting("nodes", format!("{}x{}", nodes[0], nodes[1]), "3 to 1000 nodes a side")
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Whoever watches a fit.
-pub struct Watch<'a> {
-    /// Counts while frames are solved.
-    pub meter: Arc<Meter>,
-    /// Is told of every level and iteration.
-    pub observe: Box<dyn FnMut(Event<'_>) + 'a>,
-}
-
-impl Default for Watch<'_> {
-    /// Nobody.
-    fn default() -> Self {
-        Self { meter: Arc::default(), observe: Box::new(|_| ()) }
-    }
-}
-
-/// What happens during a fit.
-#[derive(Debug, Clone, Copy)]
-pub enum Event<'a> {
-    /// A level of the curve's growth begins.
-    Level {
-        /// The component.
-        component: Component,
-        /// Control points.
-        points: usize,
-    },
-    /// A step was tried.
-    Iteration {
-        /// The step.
-        iteration: &'a Iteration,
-        /// Root mean square residual.
-        rms: f64,
-        /// Factorisations so far.
-        factorisations: usize,
-        /// Seconds so far.
-        seconds: f64,
-    },
-}
+pub(crate) use summary::sequence_reports;
+pub use watch::{Event, Watch};

@@ -173,7 +173,7 @@ fn waves(heights: &[f64], level: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cloth_sim::mesh::Disc;
+    use cloth_sim::disc::Disc;
     use std::f64::consts::{PI, TAU};
 
     #[test]

@@ -28,7 +28,7 @@
 //! let material = Material::read(&fixtures.join("materials/cotton.toml"))?;
 //! let simulation = to_rest(&scene, &material, &mut |_steps| ())?;
 //! assert!(simulation.converged());
-//! # Ok::<(), cloth_fit::error::Error>(())
+//! # Ok::<(), cloth_data::error::Error>(())
 //! ```
 
 pub mod drape;

@@ -2,10 +2,10 @@
 
 use crate::scene::Scene;
 use crate::simulation::{End, Row, Simulation};
-use cloth_fit::error::Result;
-use cloth_fit::io::{ShapeFormat, write_shapes};
+use cloth_data::error::Result;
+use cloth_data::io::{ShapeFormat, write_shapes};
+use cloth_data::store::write_file;
 use cloth_fit::material::Material;
-use cloth_fit::store::write_file;
 use cloth_sim::dynamics::{Integrator, LinearSolver, Newton};
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;

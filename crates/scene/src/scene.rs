@@ -15,8 +15,8 @@ pub use hold::Circle;
 pub use start::normal;
 
 use array::vector;
-use cloth_fit::error::{Error, Result};
-use cloth_fit::io::TomlFile;
+use cloth_data::error::{Error, Result};
+use cloth_data::io::TomlFile;
 use cloth_fit::material::Material;
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::dynamics;

@@ -3,9 +3,9 @@
 use crate::drape::{Drape, drape};
 use crate::droop::{Droop, droop};
 use crate::scene::{Measure, Scene};
-use cloth_fit::error::Result;
-use cloth_fit::interventions::Interventions;
+use cloth_data::error::Result;
 use cloth_fit::material::Material;
+use cloth_fit::stage::interventions::Interventions;
 use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::descent::{self, Descent, descend};
 use cloth_sim::dynamics::{self, Energies, Motion, Step};

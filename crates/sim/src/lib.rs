@@ -70,6 +70,7 @@ pub mod bending;
 pub mod cloth;
 pub mod curve;
 pub mod descent;
+pub mod disc;
 pub mod dynamics;
 pub mod element;
 pub mod equilibrium;

@@ -3,11 +3,6 @@
 //! A mesh says where the cloth is and how it is connected; what that costs in energy is for
 //! [`membrane`](crate::membrane) and [`bending`](crate::bending).
 
-mod disc;
-mod relax;
-
-pub use disc::Disc;
-
 use crate::error::{Error, Result};
 use nalgebra::{Vector2, Vector3};
 use std::collections::{BTreeMap, HashMap};

@@ -8,11 +8,11 @@ use crate::run::{Ending, Part, Run};
 use crate::solver::Solver;
 use crate::spent::{Spent, spend};
 use crate::subject::Subject;
-use cloth_fit::error::Result;
-use cloth_fit::frame::MeasurementSet;
+use cloth_data::error::Result;
+use cloth_data::frame::MeasurementSet;
 use cloth_fit::incremental::{self, FitReport, Stage};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::report::{SequenceReport, StageReport};
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::{SequenceReport, StageReport};
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
 

@@ -32,7 +32,7 @@
 //! let extent = Extent { rig_nodes: 7, ..Extent::quick() };
 //! let subject = Subject::built_in(&extent)?;
 //! assert!(subject.is_known && subject.set.sequences.len() == 6);
-//! # Ok::<(), cloth_fit::error::Error>(())
+//! # Ok::<(), cloth_data::error::Error>(())
 //! ```
 
 pub mod ablation;

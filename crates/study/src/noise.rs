@@ -17,12 +17,12 @@ use crate::run::{Ending, Part, Run};
 use crate::scene::Scene;
 use crate::solver::Solver;
 use crate::spent::spend;
-use cloth_fit::error::Result;
-use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::refine::GrowthRule;
-use cloth_fit::report::StageReport;
-use cloth_fit::rig::{KnownFabric, Rig, with_noise};
+use cloth_data::error::Result;
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::rig::{KnownFabric, Rig, with_noise};
+use cloth_fit::stage::GrowthRule;
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{self, Plan, Settings, Watch, bend, stretch};
 use cloth_sim::material::{Component, Curves, Model};
 
@@ -75,7 +75,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
 fn floor(stage: &StageReport) -> Option<f64> {
     let samples = &stage.curve.samples;
     let largest = samples.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
-    let square = |sample: &cloth_fit::report::Sample| {
+    let square = |sample: &cloth_fit::stage::report::Sample| {
         sample.band.map(|[_, high]| ((high - sample.stress) / BAND).powi(2))
     };
     let sum = samples.iter().map(square).sum::<Option<f64>>()?;
@@ -119,7 +119,7 @@ impl Stage {
     fn fit(&self, set: &MeasurementSet) -> Result<StageReport> {
         let mut known = self.known.clone();
         let found = stage::fit(set, &self.plan, &mut known, &self.settings, &mut Watch::default())?;
-        found.ok_or_else(|| cloth_fit::error::Error::Geometry {
+        found.ok_or_else(|| cloth_data::error::Error::Geometry {
             sequence: self.scene.name.clone(),
             found: "nothing to fit".into(),
             expected: "a sequence that shows the curve".into(),

@@ -2,8 +2,8 @@
 
 use crate::physical::Reference;
 use crate::scene::{Balanced, BalancedFrame, Scene};
-use cloth_fit::error::Result;
-use cloth_fit::frame::{Cord, MeasurementSet};
+use cloth_data::error::Result;
+use cloth_data::frame::{Cord, MeasurementSet};
 use cloth_fit::stage::Settings;
 use nalgebra::{Point3, Vector3};
 

@@ -8,7 +8,7 @@
 //! springs   S cos γ = dW/dγ,   W = ½ W_c(ε₊) + ½ W_c(ε₋),   ε± = √(1 ± sin γ) − 1      both diagonals of square cells
 //! ```
 
-use cloth_fit::report::StageReport;
+use cloth_fit::stage::report::StageReport;
 use cloth_sim::bending::{Bending, HINGE_STRAIN_PER_CURVATURE, Rolled};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::error::Result;

@@ -1,6 +1,6 @@
 //! Who is told how far a study is.
 
-use cloth_fit::simulation::Meter;
+use cloth_fit::equilibria::Meter;
 use std::sync::Arc;
 
 /// Who is told how far a study is.

@@ -1,7 +1,7 @@
 //! What a run has cost.
 
 use crate::memory;
-use cloth_fit::simulation::{Counters, Meter};
+use cloth_fit::equilibria::{Counters, Meter};
 use std::time::Instant;
 
 /// What a run has cost.

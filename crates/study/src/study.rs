@@ -7,7 +7,7 @@ use crate::run::{Part, Run};
 use crate::solver::Solver;
 use crate::subject::Subject;
 use crate::{equilibria, fits, noise};
-use cloth_fit::error::Result;
+use cloth_data::error::Result;
 
 /// All that a study has found.
 #[must_use]

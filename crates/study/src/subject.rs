@@ -2,9 +2,9 @@
 
 use crate::extent::Extent;
 use crate::fabrics::known;
-use cloth_fit::error::Result;
-use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::rig::{KnownFabric, Rig};
+use cloth_data::error::Result;
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::rig::{KnownFabric, Rig};
 use std::path::Path;
 
 /// The fabric that is measured if no set is given, and whose scenes stand in where a set's fabric is unknown.

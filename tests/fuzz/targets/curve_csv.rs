@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use cloth_fit::curve_file::CurveFile;
+use cloth_data::curve_file::CurveFile;
 use cloth_sim::material::{Component, Compression, Model};
 use fit_cloth_fuzz::{Sample, answer, evaluate};
 use libfuzzer_sys::fuzz_target;

@@ -2,8 +2,8 @@
 
 #![no_main]
 
-use cloth_fit::frame::MeasurementSet;
-use cloth_fit::io::{read_fabric, write_set};
+use cloth_data::frame::MeasurementSet;
+use cloth_data::io::{read_fabric, write_set};
 use fit_cloth_fuzz::{Sample, answer};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;

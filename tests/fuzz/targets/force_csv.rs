@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use cloth_fit::strip::{Extension, ForceTable, Measure, read_force_table};
+use cloth_data::strip::{Extension, ForceTable, Measure, read_force_table};
 use fit_cloth_fuzz::{Sample, answer, columns};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;

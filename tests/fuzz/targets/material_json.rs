@@ -2,8 +2,8 @@
 
 #![no_main]
 
-use cloth_fit::check::check_material;
-use cloth_fit::material_file::MaterialFile;
+use cloth_fit::material::check::check_material;
+use cloth_fit::material::file::MaterialFile;
 use fit_cloth_fuzz::{Sample, answer};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;

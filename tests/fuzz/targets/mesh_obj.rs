@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use cloth_fit::io::{ShapeFormat, YarnAxes, read_mesh, write_shapes};
+use cloth_data::io::{ShapeFormat, YarnAxes, read_mesh, write_shapes};
 use fit_cloth_fuzz::{Sample, answer, same};
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Vector3;

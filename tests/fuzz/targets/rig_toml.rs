@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use cloth_fit::rig::KnownFabric;
+use cloth_data::rig::KnownFabric;
 use fit_cloth_fuzz::{answer, evaluate};
 use libfuzzer_sys::fuzz_target;
 

@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use cloth_fit::strip::{Direction, Extension, StripTest, read_strip};
+use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
 use fit_cloth_fuzz::{Sample, answer, columns};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;

@@ -12,14 +12,15 @@ use crate::plot::write_plots;
 use crate::progress::Progress;
 use crate::telling::{Telling, warn, warn_of_defects};
 use crate::text;
-use cloth_fit::check::{check_material, refuse_unstable};
-use cloth_fit::error::Error;
-use cloth_fit::frame::MeasurementSet;
+use cloth_data::error::Error;
+use cloth_data::frame::MeasurementSet;
+use cloth_data::inspection::inspect;
+use cloth_data::notice::Notice;
 use cloth_fit::incremental::{self, Failure as Failed, Finished, FitReport, Memory};
-use cloth_fit::inspection::{Notice, Severity, inspect};
-use cloth_fit::knowledge::Knowledge;
-use cloth_fit::material_file::MaterialFile;
+use cloth_fit::material::check::{check_material, refuse_unstable};
+use cloth_fit::material::file::MaterialFile;
 use cloth_fit::result::write_result;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_sim::material::{Component, Compression, Model};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -191,12 +192,13 @@ fn fit_model(
 /// Doubts what was fitted with curves that are another fabric's.
 fn doubt_known(report: &mut FitReport, known: &str, fabric: &str) {
     let names: BTreeSet<&String> = report.sequences().iter().map(|(_, sequence)| &sequence.name).collect();
-    let notice = |name: &String| Notice {
-        severity: Severity::Doubt,
-        sequence: name.clone(),
-        place: "--known".into(),
-        found: format!("curves of {known}, taken as exact"),
-        expected: format!("curves of {fabric}, which was measured"),
+    let notice = |name: &String| {
+        Notice::doubt(
+            &name,
+            "--known",
+            format!("curves of {known}, taken as exact"),
+            format!("curves of {fabric}, which was measured"),
+        )
     };
     let notices: Vec<Notice> = names.into_iter().map(notice).collect();
     report.notices.extend(notices);

@@ -1,9 +1,9 @@
 //! What `fit-cloth stretch | shear | bend | fit` are about, and their examples.
 
-use cloth_fit::frame::Kind;
+use cloth_data::frame::Kind;
 use cloth_fit::incremental::Stage;
-use cloth_fit::knowledge::Knowledge;
 use cloth_fit::stage::kinds_of_all;
+use cloth_fit::stage::knowledge::Knowledge;
 use cloth_sim::material::Component;
 
 /// The example of `fit-cloth stretch`.

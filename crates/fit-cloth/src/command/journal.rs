@@ -1,7 +1,7 @@
 //! What a run that was stopped has finished, for the same command to go on after.
 
 use crate::telling::{Telling, note, warn};
-use cloth_fit::store::Recalled;
+use cloth_data::store::Recalled;
 use serde::Serialize;
 
 /// Which program this is: a journal of another one is of no use. A build in development keeps its version number, so

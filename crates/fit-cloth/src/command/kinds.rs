@@ -1,7 +1,7 @@
 //! Which kinds of test a set has, and which a command wants.
 
-use cloth_fit::error::Error;
-use cloth_fit::frame::{Kind, MeasurementSet};
+use cloth_data::error::Error;
+use cloth_data::frame::{Kind, MeasurementSet};
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -9,8 +9,8 @@ use crate::progress::Progress;
 use crate::telling::{Telling, tell};
 use crate::text;
 use clap::Args;
+use cloth_data::store::write_file;
 use cloth_fit::result::check_output;
-use cloth_fit::store::write_file;
 use cloth_study::extent::Extent;
 use cloth_study::study::{self, Study};
 use cloth_study::subject::Subject;
@@ -94,7 +94,7 @@ impl StudyOptions {
     }
 }
 
-fn write(folder: &Path, study: &Study) -> cloth_fit::error::Result<()> {
+fn write(folder: &Path, study: &Study) -> cloth_data::error::Result<()> {
     write_file(&folder.join("study.csv"), study_csv(study).as_bytes())?;
     write_file(&folder.join("ablation.csv"), ablation_csv(study).as_bytes())?;
     write_file(&folder.join("study.md"), text::study_page(study).as_bytes())

@@ -4,9 +4,9 @@ use super::choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantCho
 use crate::failure::Failure;
 use crate::output::Output;
 use clap::Args;
-use cloth_fit::error::Error;
-use cloth_fit::frame::{Kind, MeasurementSet};
-use cloth_fit::io::read_set;
+use cloth_data::error::Error;
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_data::io::read_set;
 use cloth_fit::result::check_output;
 use cloth_fit::stage::Settings;
 use cloth_sim::material::Model;

@@ -3,7 +3,7 @@
 use crate::shown::curve_labels;
 use crate::text::{self, NO_KNOWLEDGE};
 use cloth_fit::incremental::FitReport;
-use cloth_fit::report::{Histogram, Sample, StageReport};
+use cloth_fit::stage::report::{Histogram, Sample, StageReport};
 use cloth_sim::material::Component;
 use serde::{Deserialize, Serialize};
 

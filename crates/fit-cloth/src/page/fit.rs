@@ -3,13 +3,13 @@
 use super::curves::{Course, Curve, courses, curves};
 use super::sequences::{Frames, Sequence, sequences};
 use crate::text;
-use cloth_fit::frame::MeasurementSet;
+use cloth_data::frame::MeasurementSet;
+use cloth_fit::equilibria::DroppedFrame;
 use cloth_fit::incremental::FitReport;
-use cloth_fit::material_file::ResidualEntry;
-use cloth_fit::prediction::Prediction;
-use cloth_fit::report::SequenceReport;
-use cloth_fit::simulation::DroppedFrame;
-use cloth_fit::verdict::Grade;
+use cloth_fit::judge::prediction::Prediction;
+use cloth_fit::judge::verdict::Grade;
+use cloth_fit::material::file::ResidualEntry;
+use cloth_fit::stage::report::SequenceReport;
 use serde::{Deserialize, Serialize};
 
 /// All of it.

@@ -2,9 +2,9 @@
 
 use crate::shown::{ClipForce, Profile, clip_forces, extension, profiles, pulled_rows, vector};
 use base64::{Engine, engine::general_purpose::STANDARD};
-use cloth_fit::frame::{self, MeasurementSet, Phase};
-use cloth_fit::report::{ForceRow, SequenceReport};
-use cloth_fit::shapes::{FrameShape, Place, Shapes};
+use cloth_data::frame::{self, MeasurementSet, Phase};
+use cloth_fit::stage::report::{ForceRow, SequenceReport};
+use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 

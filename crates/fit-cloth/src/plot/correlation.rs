@@ -4,7 +4,7 @@ use super::drawing::{Area, Drawn};
 use super::palette::{BLUE, GREY, VERMILLION};
 use super::writing::{self, INK, TEXT, TITLE, signed};
 use cloth_fit::incremental::FitReport;
-use cloth_fit::report::StageReport;
+use cloth_fit::stage::report::StageReport;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 

@@ -4,7 +4,7 @@ use super::chart::{Axes, figure};
 use super::drawing::Drawn;
 use super::palette::{MEASURED, MODEL};
 use crate::shown::extension;
-use cloth_fit::frame::Kind;
+use cloth_data::frame::Kind;
 use plotters::style::Color;
 
 /// A frame.

@@ -3,8 +3,8 @@
 use super::cycle::{self, Point};
 use super::drawing::Drawn;
 use crate::shown::pulled_rows;
-use cloth_fit::frame::{Kind, Phase};
-use cloth_fit::report::{ForceRow, SequenceReport};
+use cloth_data::frame::{Kind, Phase};
+use cloth_fit::stage::report::{ForceRow, SequenceReport};
 
 /// Draws all sequences of a kind.
 ///

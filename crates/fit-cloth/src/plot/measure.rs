@@ -2,8 +2,8 @@
 
 use super::cycle::{self, Point};
 use super::drawing::Drawn;
-use cloth_fit::frame::Kind;
-use cloth_fit::validation::{Measure, MeasureRow};
+use cloth_data::frame::Kind;
+use cloth_fit::judge::validation::{Measure, MeasureRow};
 
 /// # Errors
 /// No frame.

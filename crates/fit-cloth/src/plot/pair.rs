@@ -7,8 +7,8 @@ use super::sheet::Sheet;
 use super::view::View;
 use super::writing::INK;
 use crate::shown::{ClipForce, clip_forces};
-use cloth_fit::frame::Sequence;
-use cloth_fit::report::SequenceReport;
+use cloth_data::frame::Sequence;
+use cloth_fit::stage::report::SequenceReport;
 use nalgebra::Vector3;
 use plotters::style::{Color, RGBColor};
 

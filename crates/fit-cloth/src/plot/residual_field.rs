@@ -5,8 +5,8 @@ use super::palette::{GREY, MEASURED};
 use super::picture::{self, ArrowScale, Picture};
 use super::sheet::Sheet;
 use super::view::View;
-use cloth_fit::frame::Sequence;
-use cloth_fit::report::SequenceReport;
+use cloth_data::frame::Sequence;
+use cloth_fit::stage::report::SequenceReport;
 use nalgebra::Vector3;
 use plotters::style::Color;
 

@@ -4,7 +4,7 @@ use super::drawing::{Area, Drawn};
 use super::palette::{GREY, MODEL};
 use super::writing::{self, INK, TEXT, TITLE};
 use cloth_fit::incremental::FitReport;
-use cloth_fit::report::SequenceReport;
+use cloth_fit::stage::report::SequenceReport;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 

@@ -1,8 +1,8 @@
 //! The frame of a sequence that figures show, on a mesh that is fine enough to look at.
 
 use crate::shown::vector;
-use cloth_fit::frame::{Kind, Table};
-use cloth_fit::shapes::{FrameShape, Place, Shapes};
+use cloth_data::frame::{Kind, Table};
+use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::Vector3;
 

@@ -5,7 +5,7 @@ use super::chart::{Axes, Chart, figure_over};
 use super::drawing::Drawn;
 use super::palette::{GREEN, GREY, MODEL};
 use crate::shown::curve_labels;
-use cloth_fit::report::{Histogram, Sample, StageReport};
+use cloth_fit::stage::report::{Histogram, Sample, StageReport};
 use plotters::style::Color;
 use std::ops::Range;
 

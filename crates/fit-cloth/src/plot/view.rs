@@ -1,6 +1,6 @@
 //! From where a sheet is seen.
 
-use cloth_fit::frame::Table;
+use cloth_data::frame::Table;
 use cloth_scene::scene::normal as normal_of;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector2, Vector3};

@@ -1,8 +1,8 @@
 //! The force on a clip, measured and simulated.
 
-use cloth_fit::frame::Sequence;
-use cloth_fit::measure::clip_centres;
-use cloth_fit::report::{ForceRow, SequenceReport};
+use cloth_data::frame::Sequence;
+use cloth_data::measure::clip_centres;
+use cloth_fit::stage::report::{ForceRow, SequenceReport};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

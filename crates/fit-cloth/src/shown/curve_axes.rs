@@ -1,6 +1,6 @@
 //! The axes of a curve.
 
-use cloth_fit::curve_file::Kind;
+use cloth_data::curve_file::Kind;
 use cloth_sim::material::{Component, Model};
 
 /// What a curve is over, and what it gives.

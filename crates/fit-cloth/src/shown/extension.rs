@@ -1,6 +1,6 @@
 //! How far a test went, as axes name it.
 
-use cloth_fit::frame::Kind;
+use cloth_data::frame::Kind;
 
 /// What a test's extension is, for an axis.
 pub(crate) fn extension(kind: Kind) -> &'static str {

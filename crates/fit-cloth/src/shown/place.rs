@@ -1,6 +1,6 @@
 //! A place of a shape, to compute with.
 
-use cloth_fit::shapes::Place;
+use cloth_fit::stage::shapes::Place;
 use nalgebra::Vector3;
 
 /// In double precision.

@@ -1,9 +1,9 @@
 //! Profiles of a sheet across a table's edge, measured and simulated.
 
 use super::place::vector;
-use cloth_fit::frame::Sequence;
-use cloth_fit::measure::bend_profile;
-use cloth_fit::shapes::{FrameShape, Place, Shapes};
+use cloth_data::frame::Sequence;
+use cloth_data::measure::bend_profile;
+use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

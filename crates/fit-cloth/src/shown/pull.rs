@@ -1,6 +1,6 @@
 //! The pull of a test among the forces on its clips.
 
-use cloth_fit::report::ForceRow;
+use cloth_fit::stage::report::ForceRow;
 
 /// The rows of the force component that is largest: the pull, on the clip where it was measured. Its direction may turn
 /// with the clip; its place among the clip's components stays.

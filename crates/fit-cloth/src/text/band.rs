@@ -1,6 +1,6 @@
 //! Half bands, and what they are worth.
 
-use cloth_fit::report::Sample;
+use cloth_fit::stage::report::Sample;
 
 /// Half a band this many times what it is about is no knowledge of it.
 pub(crate) const NO_KNOWLEDGE: f64 = 10.0;

@@ -2,7 +2,7 @@
 
 use super::list::list;
 use crate::subject::Subject;
-use cloth_fit::repair::Repair;
+use cloth_fit::judge::repair::Repair;
 use cloth_sim::curve::soundness::{Finding, Kind};
 use std::fmt::Write;
 use std::path::Path;

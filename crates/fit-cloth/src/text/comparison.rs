@@ -2,7 +2,7 @@
 
 use super::list::list;
 use super::number::percent;
-use cloth_fit::compare::{Comparison, Criterion, Distance, Row};
+use cloth_fit::judge::compare::{Comparison, Criterion, Distance, Row};
 use serde::{Deserialize, Serialize};
 
 /// What stands in a row, and how wide on a terminal; text on the left, numbers on the right.

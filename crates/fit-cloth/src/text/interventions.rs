@@ -1,7 +1,7 @@
 //! What helped solves and fits along.
 
 use super::list::list;
-use cloth_fit::interventions::Interventions;
+use cloth_fit::stage::interventions::Interventions;
 
 /// What helped solves and fits along, on a line; nothing where nothing did.
 pub(super) fn interventions(interventions: &Interventions) -> String {

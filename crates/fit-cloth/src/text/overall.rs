@@ -3,8 +3,8 @@
 use super::band::half_band;
 use super::list::list;
 use cloth_fit::incremental::FitReport;
-use cloth_fit::report::{SequenceReport, StageReport};
-use cloth_fit::verdict::{self, Verdict, widest_band};
+use cloth_fit::judge::verdict::{self, Verdict, widest_band};
+use cloth_fit::stage::report::{SequenceReport, StageReport};
 use cloth_sim::material::Component;
 
 /// What a reader who knows no details should know of a fit.

@@ -1,6 +1,6 @@
 //! The range of a curve that was seen.
 
-use cloth_fit::report::StageReport;
+use cloth_fit::stage::report::StageReport;
 
 /// The strains or curvatures between which a stage's curve was seen.
 pub(super) fn seen(stage: &StageReport) -> String {

@@ -5,9 +5,9 @@ use super::interventions::interventions;
 use super::list::list;
 use super::range::seen;
 use super::unit::unit;
-use cloth_fit::curve_file::Kind;
-use cloth_fit::report::StageReport;
-use cloth_fit::simulation::Objective;
+use cloth_data::curve_file::Kind;
+use cloth_fit::equilibria::Objective;
+use cloth_fit::stage::report::StageReport;
 use std::fmt::Write;
 
 /// What a stage used and how it went, a line each; without the time, which is not the same twice.

@@ -4,7 +4,7 @@ use super::band::half_band;
 use super::list::list;
 use super::range::seen;
 use cloth_fit::incremental::FitReport;
-use cloth_fit::report::{Sample, StageReport};
+use cloth_fit::stage::report::{Sample, StageReport};
 use cloth_sim::material::Component;
 use std::fmt::Write;
 

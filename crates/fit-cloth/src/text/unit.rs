@@ -1,7 +1,7 @@
 //! Units of residuals.
 
-use cloth_fit::report::StageReport;
-use cloth_fit::simulation::Objective;
+use cloth_fit::equilibria::Objective;
+use cloth_fit::stage::report::StageReport;
 
 /// In what a stage's residuals are shown: the unit, and how many of it make one of SI.
 pub(super) fn unit(stage: &StageReport) -> (&'static str, f64) {

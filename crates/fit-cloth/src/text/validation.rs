@@ -3,9 +3,9 @@
 use super::interventions::interventions;
 use super::list::list;
 use super::number::{cell, percent};
-use cloth_fit::frame::MeasurementSet;
-use cloth_fit::material_file::{CurveEntry, MaterialFile};
-use cloth_fit::validation::{Validated, Validation};
+use cloth_data::frame::MeasurementSet;
+use cloth_fit::judge::validation::{Validated, Validation};
+use cloth_fit::material::file::{CurveEntry, MaterialFile};
 use cloth_sim::material::{Component, Model};
 use std::collections::BTreeSet;
 use std::fmt::Write;

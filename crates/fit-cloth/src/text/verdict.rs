@@ -4,10 +4,10 @@ use super::band::sure;
 use super::list::list;
 use super::range::seen;
 use super::unit::unit;
+use cloth_data::notice::Notice;
 use cloth_fit::incremental::FitReport;
-use cloth_fit::inspection::Notice;
-use cloth_fit::report::{SequenceReport, StageReport};
-use cloth_fit::verdict::{Verdict, of_fit, of_stage, widest_band};
+use cloth_fit::judge::verdict::{Verdict, of_fit, of_stage, widest_band};
+use cloth_fit::stage::report::{SequenceReport, StageReport};
 use std::fmt::Write;
 
 /// How far to trust it and why, what limits it, what to measure next; as a footnote, why the fit stopped.

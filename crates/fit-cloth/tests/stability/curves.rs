@@ -2,8 +2,8 @@
 
 use crate::property::for_all;
 use crate::table::{Extent, Row};
-use cloth_fit::check::refuse_unstable;
-use cloth_fit::repair::repair;
+use cloth_fit::judge::repair::repair;
+use cloth_fit::material::check::refuse_unstable;
 use cloth_sim::curve::soundness::{Context, Finding, Kind, LEAST_TANGENT, MEMBRANE_STIFFNESS, check};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::error::Error;

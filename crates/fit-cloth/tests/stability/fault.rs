@@ -1,7 +1,7 @@
 //! A fit that something stops: at any of its calls to the file system, or at any allocation of memory.
 
 use crate::support::full_set;
-use cloth_fit::io::write_set;
+use cloth_data::io::write_set;
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::process::ExitStatusExt;

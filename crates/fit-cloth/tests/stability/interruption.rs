@@ -2,7 +2,7 @@
 
 use crate::fault::{Before, Bench, Fault, Run, names};
 use crate::table::{Extent, Row};
-use cloth_fit::store::OutputFolder;
+use cloth_data::store::OutputFolder;
 use std::collections::BTreeMap;
 
 /// Ctrl-C: at every call to the file system, and at allocations in between.

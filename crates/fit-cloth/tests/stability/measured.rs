@@ -1,7 +1,7 @@
 //! Small measurement sets from closed forms, of any law, size, stiffness and noise.
 
 use crate::support::full_set;
-use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
+use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_sim::material::Model;
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};

@@ -1,14 +1,14 @@
 //! Every kind of file that is read, a valid one of each, and what becomes of a damaged one.
 
 use crate::support::full_set;
-use cloth_fit::curve_file::CurveFile;
-use cloth_fit::error::{Error, Result};
-use cloth_fit::frame::{MeasurementSet, Noise, Phase};
-use cloth_fit::io::{ShapeFormat, read_fabric, read_sequence, write_set, write_shapes};
+use cloth_data::curve_file::CurveFile;
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::{MeasurementSet, Noise, Phase};
+use cloth_data::io::{ShapeFormat, read_fabric, read_sequence, write_set, write_shapes};
+use cloth_data::rig::KnownFabric;
+use cloth_data::strip::{Direction, Extension, ForceTable, Measure, StripTest, read_force_table, read_strip};
 use cloth_fit::material::Material;
-use cloth_fit::material_file::MaterialFile;
-use cloth_fit::rig::KnownFabric;
-use cloth_fit::strip::{Direction, Extension, ForceTable, Measure, StripTest, read_force_table, read_strip};
+use cloth_fit::material::file::MaterialFile;
 use cloth_scene::scene::Scene;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

@@ -3,8 +3,8 @@
 use crate::meshes::{Parts, spoilt};
 use crate::property::for_all;
 use crate::table::{Extent, Row};
-use cloth_fit::frame::MeasurementSet;
-use cloth_fit::io::{read_set, write_set};
+use cloth_data::frame::MeasurementSet;
+use cloth_data::io::{read_set, write_set};
 use cloth_sim::cloth::Cloth;
 use cloth_sim::error::{Error, Part};
 use cloth_sim::load::Held;

@@ -3,8 +3,10 @@
 
 use crate::property::for_all;
 use crate::table::{Extent, Row};
-use cloth_fit::gauss_newton::{Domain, Evaluation, Options, Residuals, Status as FitStatus, minimise};
-use cloth_fit::least_squares::{Bound, LeastSquares, Smoothing, Solution, Status};
+use cloth_fit::optimise::gauss_newton::{
+    Domain, Evaluation, Options, Residuals, Status as FitStatus, minimise,
+};
+use cloth_fit::optimise::least_squares::{Bound, LeastSquares, Smoothing, Solution, Status};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use rand::{Rng, SeedableRng, rngs::StdRng};

@@ -108,7 +108,7 @@ pub(crate) fn case_04(extent: Extent) -> Vec<Row> {
             let component = Component::StretchWeft;
             let negative = model.negative_strain(component, Default::default());
             let curve = StiffnessCurve::new(strains, vec![0.0; zeros], negative).unwrap();
-            let context = cloth_fit::check::context(model, component, None);
+            let context = cloth_fit::material::check::context(model, component, None);
             let finding = check(&curve, &context).into_iter().next();
             let said = finding.is_some_and(|found| found.consequence().contains("no stiffness at all"));
             let mut sample = samples::hanging_sheet(model, 5).unwrap();

@@ -298,7 +298,7 @@ fn quads(row: &mut Row, (columns, rows, backwards): (usize, usize, bool)) -> boo
         triangles.extend([[a, b, c], [a, c, d]]);
     }
     fs::write(&path, text).unwrap();
-    let mesh = match cloth_fit::io::read_mesh(&path, None) {
+    let mesh = match cloth_data::io::read_mesh(&path, None) {
         Ok(mesh) if mesh.triangles == triangles => mesh,
         other => return row.holds(false, || format!("{columns}x{rows}: {other:?}")),
     };

@@ -2,7 +2,7 @@
 
 use crate::fault::{PROGRAM, Tree, names, small_set, tree};
 use crate::table::{Extent, Row};
-use cloth_fit::store::OutputFolder;
+use cloth_data::store::OutputFolder;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};

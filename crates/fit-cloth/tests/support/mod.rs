@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
-use cloth_fit::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence, Table};
+use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence, Table};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 

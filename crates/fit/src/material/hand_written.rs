@@ -1,10 +1,9 @@
 //! A material's TOML file, as a person writes it.
 
-use super::Material;
-use super::points::Points as ControlPoints;
-use crate::curve_file::CurveFile;
-use crate::error::{Error, Result};
-use crate::io::TomlFile;
+use cloth_data::curve_file::CurveFile;
+use cloth_data::error::{Error, Result};
+use cloth_data::io::TomlFile;
+use cloth_data::points::Points as ControlPoints;
 use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -18,11 +17,11 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct HandWritten {
-    name: String,
-    areal_density_kg_m2: f64,
-    model: Model,
+    pub(super) name: String,
+    pub(super) areal_density_kg_m2: f64,
+    pub(super) model: Model,
     #[serde(default)]
-    compression: Compression,
+    pub(super) compression: Compression,
     #[serde(default, rename = "notes")]
     _notes: Option<String>,
     curves: BTreeMap<Component, Points>,
@@ -48,29 +47,28 @@ struct Points {
 }
 
 impl HandWritten {
-    /// The material that the file describes.
-    pub(super) fn material(self, path: &Path, file: &TomlFile) -> Result<Material> {
+    /// The curves that the file describes, all of it checked.
+    pub(super) fn curves(&self, path: &Path, file: &TomlFile) -> Result<Curves> {
         let Self { name, areal_density_kg_m2: density, model, compression, curves, .. } = self;
         if name.trim().is_empty() {
             return Err(file.invalid("name", "nothing", "the material's name"));
         }
-        if !(density > 0.0 && density <= 10.0) {
+        if !(*density > 0.0 && *density <= 10.0) {
             let expected = "kilograms per square metre, above 0 and at most 10";
             return Err(file.invalid("areal_density_kg_m2", density.to_string(), expected));
         }
         if curves.is_empty() {
             return Err(Error::input(path, None, "curves", "nothing", "one component's curve at least"));
         }
-        let curves = curves.into_iter().map(|(component, points)| {
-            let negative = model.negative_strain(component, compression);
+        let curves = curves.iter().map(|(&component, points)| {
+            let negative = model.negative_strain(component, *compression);
             if let Some(table) = points.table(component, file)? {
                 let table = path.parent().unwrap_or(Path::new("")).join(table);
-                return Ok((component, CurveFile::read(&table)?.curve(component, model, negative)?));
+                return Ok((component, CurveFile::read(&table)?.curve(component, *model, negative)?));
             }
-            Ok((component, points.curve(model, component, negative, file)?))
+            Ok((component, points.curve(*model, component, negative, file)?))
         });
-        let curves = curves.collect::<Result<Curves>>()?;
-        Ok(Material { name, areal_density: density, model, compression, curves })
+        curves.collect()
     }
 }
 

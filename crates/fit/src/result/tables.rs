@@ -1,8 +1,8 @@
 //! The tables of a result folder.
 
-use crate::curve_file::{ENGINEERING, Kind};
 use crate::incremental::FitReport;
-use crate::report::{Sample, SequenceReport, StageReport};
+use crate::stage::report::{Sample, SequenceReport, StageReport};
+use cloth_data::curve_file::{ENGINEERING, Kind};
 use std::fmt::Write;
 
 /// 201 rows; the band's cells are empty where the data do not see the curve, its columns absent where they see none of it. Beside Green strain and its

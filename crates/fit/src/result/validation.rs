@@ -1,14 +1,14 @@
 //! The folder of a validation: `validation.json`, `validation.csv`, `measures.csv`, `forces.csv`.
 
 use super::tables::{cell, force_table};
-use crate::error::Result;
-use crate::frame::MeasurementSet;
-use crate::inspection::Notice;
-use crate::interventions::Interventions;
-use crate::material_file::{MaterialFile, ResidualEntry};
+use crate::judge::validation::{Measure, MeasureRow, Validated, Validation};
+use crate::material::file::{MaterialFile, ResidualEntry};
 use crate::stage::Variant;
-use crate::store::write_file;
-use crate::validation::{Measure, MeasureRow, Validated, Validation};
+use crate::stage::interventions::Interventions;
+use cloth_data::error::Result;
+use cloth_data::frame::MeasurementSet;
+use cloth_data::notice::Notice;
+use cloth_data::store::write_file;
 use cloth_sim::material::{Component, Model};
 use serde::Serialize;
 use std::fmt::Write;

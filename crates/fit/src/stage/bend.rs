@@ -2,8 +2,8 @@
 //!
 //! Source: Miguel et al. 2012, §5.2. What is held at the edge is ours: docs/model.md.
 
-use super::{Plan, kinds_of_all};
-use crate::simulation::Objective;
+use super::plan::{Plan, kinds_of_all};
+use crate::equilibria::Objective;
 use cloth_sim::material::Component;
 
 /// What the stage fits, and on what.

@@ -1,70 +1,26 @@
 //! The course that every stage takes: replicas, a start, equilibria, a curve that grows, and how sure it is.
 
+use super::growth::{Growth, grow, refit};
+use super::interventions::Interventions;
+use super::knowledge::Knowledge;
+use super::plan::{Plan, mechanics, unfit};
+use super::report::{Basis, StageReport};
+use super::settings::Settings;
 use super::start::{Start, start};
-use super::{Settings, Watch};
-use crate::error::{Error, Result};
-use crate::frame::{Kind, MeasurementSet};
-use crate::gauss_newton::Outcome;
-use crate::interventions::Interventions;
-use crate::knowledge::Knowledge;
-use crate::refine::{Growth, grow, refit};
-use crate::replica::{Parts, Replica};
-use crate::report::{Basis, StageReport};
-use crate::simulation::{Objective, Simulation, Task};
-use crate::summary::{curve_report, sequence_reports};
-use crate::uncertainty::{Covariance, Scatter};
+use super::summary::{curve_report, sequence_reports};
+use super::watch::Watch;
+use crate::equilibria::{Objective, Simulation, Task};
+use crate::optimise::gauss_newton::Outcome;
+use crate::optimise::uncertainty::{Covariance, Scatter};
+use crate::twin::replica::Replica;
+use cloth_data::error::Result;
+use cloth_data::frame::MeasurementSet;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// What a stage fits, and on what.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Plan {
-    /// The components that share the fitted curve: one, or weft and warp of an isotropic variant.
-    pub fitted: Vec<Component>,
-    /// All components that store energy.
-    pub components: Vec<Component>,
-    /// What is compared.
-    pub objective: Objective,
-    /// The tests that show it.
-    pub kinds: Vec<Kind>,
-    /// Sheets between clips stay in their plane.
-    pub flat: bool,
-    /// First or second pass over the component.
-    pub pass: usize,
-}
-
-impl Plan {
-    /// The fitted components by name.
-    pub fn name(&self) -> String {
-        let names: Vec<String> = self.fitted.iter().map(|component| component.to_string()).collect();
-        names.join(" = ")
-    }
-
-    /// The replicas of all sequences of a set that show what is fitted.
-    ///
-    /// # Errors
-    /// Sequences that no replica can be made of.
-    pub fn replicas(&self, set: &MeasurementSet, settings: &Settings) -> Result<Vec<Replica>> {
-        let parts = |kind: Kind| Parts {
-            model: settings.model,
-            components: self.components.clone(),
-            areal_density: set.fabric.areal_density_kg_m2,
-            nodes: settings.nodes,
-            diagonals: settings.diagonals,
-            table: settings.table,
-            // Strips cut on the bias are pulled taut, and nobody saw them buckle.
-            flat: self.flat || kind == Kind::StretchBias,
-        };
-        let shows = set.sequences.iter().filter(|sequence| self.kinds.contains(&sequence.kind));
-        let replicas = shows.map(|sequence| Replica::new(sequence, &parts(sequence.kind)));
-        let strained = |replica: &Replica| self.fitted.iter().any(|&component| replica.shows(component));
-        replicas.filter(|replica| replica.as_ref().map_or(true, strained)).collect()
-    }
-}
 
 /// Runs one stage and adds what it found to what is known; `None` if no sequence shows what it fits, or if a second pass
 /// over it has nothing to add.
@@ -260,14 +216,4 @@ fn is_observed(plan: &Plan, growth: &Growth, scatter: &Scatter, knowledge: &Know
     let signal = (&growth.outcome.jacobian * size).norm();
     let misfit = 0.5 * scatter.misfit * (scatter.measurements as f64).sqrt();
     signal > (2.0 * scatter.noise).hypot(misfit)
-}
-
-pub(super) fn unfit(replicas: &[Replica], found: String, expected: &str) -> Error {
-    let names: Vec<&str> = replicas.iter().map(|replica| &replica.name[..]).collect();
-    Error::Geometry { sequence: names.join(", "), found, expected: expected.into() }
-}
-
-pub(super) fn mechanics(plan: &Plan) -> impl Fn(cloth_sim::error::Error) -> Error {
-    let context = plan.name();
-    move |source| Error::Mechanics { context: context.clone(), source }
 }

@@ -5,8 +5,8 @@
 //!
 //! Source: Miguel et al. 2012, §5.2; the strip cut on the bias is ours, for those without a picture frame.
 
-use super::{Plan, kinds_of_all};
-use crate::simulation::Objective;
+use super::plan::{Plan, kinds_of_all};
+use crate::equilibria::Objective;
 use cloth_sim::material::Component;
 
 /// What the stage fits, and on what.

@@ -1,41 +1,17 @@
 //! Where a stage starts without any simulation: a constant stiffness, and constants for what is not known yet.
 
-use super::course::{Plan, mechanics, unfit};
-use super::{Constraints, Settings};
-use crate::error::Result;
-use crate::gap;
-use crate::gauss_newton::Domain;
-use crate::knowledge::Knowledge;
-use crate::refine::domain;
-use crate::replica::Replica;
-use crate::simulation::Objective;
+use super::gap;
+use super::growth::domain;
+use super::knowledge::Knowledge;
+use super::plan::{Plan, mechanics, unfit};
+use super::settings::{Constraints, Settings};
+use crate::equilibria::Objective;
+use crate::optimise::gauss_newton::Domain;
+use crate::twin::replica::Replica;
+use cloth_data::error::Result;
 use cloth_sim::curve::{StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Curves, Model};
 use std::collections::BTreeMap;
-
-/// The constant stiffness that a stage starts from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FirstStiffness {
-    /// What balances the clip forces on blended shapes (equilibrium gap), or what Peirce's formula makes of an overhang.
-    #[default]
-    FromMeasurements,
-    /// The same for every fabric: 100 N/m for stretch, 10 N/m for shear, a flexural rigidity of 1e-5 N·m for bending. The
-    /// published method does not say where it starts; these are ours, round numbers among light and heavy fabrics.
-    Constant,
-}
-
-impl FirstStiffness {
-    /// Stretch or shear, N/m; `None` if the measurements say.
-    fn of_membrane(self, component: Component) -> Option<f64> {
-        let constant = if component.is_stretch() { 100.0 } else { 10.0 };
-        (self == Self::Constant).then_some(constant)
-    }
-
-    /// Flexural rigidity, N·m; `None` if the measurements say.
-    fn of_bending(self) -> Option<f64> {
-        (self == Self::Constant).then_some(1e-5)
-    }
-}
 
 /// Where a stage starts.
 pub(super) struct Start {

@@ -5,12 +5,15 @@
 //!
 //! Source: Miguel et al. 2012, §5.2.
 
-use super::{Plan, Settings, Watch, course, kinds_of_all};
-use crate::error::Result;
-use crate::frame::MeasurementSet;
-use crate::knowledge::Knowledge;
-use crate::report::StageReport;
-use crate::simulation::Objective;
+use super::course;
+use super::knowledge::Knowledge;
+use super::plan::{Plan, kinds_of_all};
+use super::report::StageReport;
+use super::settings::Settings;
+use super::watch::Watch;
+use crate::equilibria::Objective;
+use cloth_data::error::Result;
+use cloth_data::frame::MeasurementSet;
 use cloth_sim::material::Component;
 
 /// What the stage fits, and on what.

@@ -1,7 +1,7 @@
 //! Arrays of numbers in a scene's file.
 
-use cloth_fit::error::Result;
-use cloth_fit::io::TomlFile;
+use cloth_data::error::Result;
+use cloth_data::io::TomlFile;
 use nalgebra::Vector3;
 
 /// Three finite numbers.

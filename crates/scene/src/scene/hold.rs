@@ -2,8 +2,8 @@
 
 use super::array::{pair, vector};
 use super::file::{BoxFile, CircleFile, Corner, EdgeName, FreeName, HoldFile};
-use cloth_fit::error::Result;
-use cloth_fit::io::TomlFile;
+use cloth_data::error::Result;
+use cloth_data::io::TomlFile;
 use cloth_sim::load::{Free, Guided, Held};
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector2;

@@ -2,8 +2,8 @@
 
 use super::array::vector;
 use super::file::{DampingFile, IntegratorName, LinearName, NewtonName, SolverFile, WindFile};
-use cloth_fit::error::Result;
-use cloth_fit::io::TomlFile;
+use cloth_data::error::Result;
+use cloth_data::io::TomlFile;
 use cloth_sim::dynamics::{Damping, Integrator, LinearSolver, Newton, Settings, Wind};
 
 /// γ of conjugate gradients, as published.

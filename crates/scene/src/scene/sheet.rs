@@ -2,9 +2,10 @@
 
 use super::array::{check_length, vector};
 use super::file::{Axis, DiscFile, GridFile, MeshFile, SheetFile};
-use cloth_fit::error::Result;
-use cloth_fit::io::{TomlFile, YarnAxes, read_mesh};
-use cloth_sim::mesh::{Disc, Grid, Mesh};
+use cloth_data::error::Result;
+use cloth_data::io::{TomlFile, YarnAxes, read_mesh};
+use cloth_sim::disc::Disc;
+use cloth_sim::mesh::{Grid, Mesh};
 use nalgebra::Vector3;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Where a scene starts: its sheet, slightly out of its plane.
 
-use cloth_fit::error::Result;
-use cloth_fit::io::TomlFile;
+use cloth_data::error::Result;
+use cloth_data::io::TomlFile;
 use cloth_sim::load::{Guided, Held};
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Vector2, Vector3};

@@ -8,11 +8,11 @@ use crate::physical::{Reference, between};
 use crate::progress::Progress;
 use crate::solver::{Solver, damped};
 use crate::subject::Subject;
-use cloth_fit::refine::GrowthRule;
-use cloth_fit::replica::TableHold;
-use cloth_fit::report::StageReport;
-use cloth_fit::simulation::SolveStart;
+use cloth_fit::equilibria::SolveStart;
+use cloth_fit::stage::GrowthRule;
+use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Constraints, FirstStiffness, Settings};
+use cloth_fit::twin::replica::TableHold;
 
 /// Something that the published method does without.
 type Published = (&'static str, fn(Settings) -> Settings);

@@ -7,7 +7,7 @@ use crate::outcome::Outcome;
 use crate::subject::Source;
 use crate::telling::Telling;
 use clap::Args;
-use cloth_fit::curve_edit::{Extension, Trend, extended};
+use cloth_data::curve_edit::{Extension, Trend, extended};
 use std::io::Write;
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! Which columns and rows of a table are taken.
 
 use clap::Args;
-use cloth_fit::strip::{Column, Extension};
+use cloth_data::strip::{Column, Extension};
 use std::ops::RangeInclusive;
 
 /// The column that tells where the clamps were: one of three.

@@ -6,10 +6,10 @@ use crate::outcome::Outcome;
 use crate::output::whole;
 use crate::telling::{Telling, note_lines_above, tell, warn};
 use clap::{Args, ValueEnum};
-use cloth_fit::error::Error;
-use cloth_fit::frame::Sequence;
-use cloth_fit::io::read_fabric;
-use cloth_fit::strip::{
+use cloth_data::error::Error;
+use cloth_data::frame::Sequence;
+use cloth_data::io::read_fabric;
+use cloth_data::strip::{
     Added, Column, Direction, FreeLength, Sample, Strip, StripTest, add_to_set, read_strip,
 };
 use nalgebra::Isometry3;

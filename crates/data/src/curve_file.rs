@@ -1,0 +1,450 @@
+//! A curve as a table: stress against strain, or moment against curvature, to a curve that a simulation takes.
+//!
+//! ```text
+//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ            or as a fit names them
+//! bending           curvature_per_m, moment_n        εᵢ = 3 × curvature     kᵢ = Mᵢ/εᵢ      hinges of a regular grid
+//! ```
+//!
+//! Every row with ε > 0 is a control point. The stiffness at zero, which no stress can tell, stands in the column
+//! `stiffness_n_per_m` or `rigidity_n_m`; without it, it is that of the first row above zero, k₀ = k₁: what interpolation on a
+//! straight line from no stress to that row means, and never below zero where a line through two rows would be.
+
+mod read;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Result};
+use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::material::{Component, Model};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// How far rows below zero may be from what the model makes of the rows above, as a share of the largest stress.
+const DISAGREEMENT: f64 = 0.01;
+/// Strains up to this share of the largest are zero: 201 equidistant rows from below zero meet it to rounding only.
+const ZERO: f64 = 1e-9;
+
+/// What a table is of, as its columns say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Stress (N/m) over strain, of stretch or shear, in the strain of the model that will read it.
+    Membrane,
+    /// Second Piola–Kirchhoff (PK2) stress per width (N/m) over Green strain: stretch of `stvk`.
+    Green,
+    /// Nominal stress per width (N/m) over engineering strain: stretch of the other models.
+    Engineering,
+    /// Shear stress (N/m) over w_u·w_v: shear of triangles.
+    Shear,
+    /// Stress (N/m) over the engineering strain of the cells' diagonals: shear of springs.
+    Diagonal,
+    /// Moment per width (N) over curvature (1/m).
+    Bending,
+}
+
+impl Kind {
+    /// All of them, those first whose columns say the most.
+    const ALL: [Self; 6] =
+        [Self::Bending, Self::Green, Self::Engineering, Self::Shear, Self::Diagonal, Self::Membrane];
+
+    /// Strain or curvature, secant stiffness, stress or moment, and the band's sides, as they head a file.
+    pub fn columns(self) -> [&'static str; 5] {
+        const K: &str = "stiffness_n_per_m";
+        match self {
+            Self::Membrane => ["strain", K, "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
+            Self::Green => {
+                ["green_strain", K, "pk2_stress_n_per_m", "pk2_stress_low_n_per_m", "pk2_stress_high_n_per_m"]
+            }
+            Self::Engineering => [
+                ENGINEERING[0],
+                K,
+                ENGINEERING[1],
+                "nominal_stress_low_n_per_m",
+                "nominal_stress_high_n_per_m",
+            ],
+            Self::Shear => [
+                "shear_strain",
+                K,
+                "shear_stress_n_per_m",
+                "shear_stress_low_n_per_m",
+                "shear_stress_high_n_per_m",
+            ],
+            Self::Diagonal => [
+                "diagonal_strain",
+                K,
+                "diagonal_stress_n_per_m",
+                "diagonal_stress_low_n_per_m",
+                "diagonal_stress_high_n_per_m",
+            ],
+            Self::Bending => ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"],
+        }
+    }
+
+    /// Strain and stress, or curvature and moment, in words.
+    pub fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Membrane => ["strain", "stress"],
+            Self::Green => ["Green strain", "PK2 stress"],
+            Self::Engineering => ["engineering strain", "nominal stress"],
+            Self::Shear => ["shear strain", "shear stress"],
+            Self::Diagonal => ["diagonal strain", "diagonal stress"],
+            Self::Bending => ["curvature", "moment per width"],
+        }
+    }
+
+    /// The kind of a component's table in a model.
+    pub fn of(component: Component, model: Model) -> Self {
+        match (component.is_bending(), component, model) {
+            (true, ..) => Self::Bending,
+            (false, Component::Shear, Model::Springs) => Self::Diagonal,
+            (false, Component::Shear, _) => Self::Shear,
+            (false, _, Model::Stvk) => Self::Green,
+            (false, ..) => Self::Engineering,
+        }
+    }
+
+    /// A component and a model that have such tables.
+    pub fn typical(self) -> (Component, Model) {
+        match self {
+            Self::Membrane | Self::Green => (Component::StretchWeft, Model::Stvk),
+            Self::Engineering => (Component::StretchWeft, Model::SoftConstraint),
+            Self::Shear => (Component::Shear, Model::Stvk),
+            Self::Diagonal => (Component::Shear, Model::Springs),
+            Self::Bending => (Component::BendWeft, Model::Stvk),
+        }
+    }
+
+    /// Engineering strain and nominal stress of a row of [`Kind::Green`], √(1 + 2E) − 1 and S √(1 + 2E); `None` of other
+    /// kinds, which have no others beside their own, and where no length is left.
+    pub fn engineering(self, strain: f64, stress: f64) -> Option<[f64; 2]> {
+        let square = 1.0 + 2.0 * strain;
+        let stretch = Some(square).filter(|square| self == Self::Green && *square > 0.0)?.sqrt();
+        // Without cancellation: (λ² − 1)/(λ + 1).
+        Some([2.0 * strain / (stretch + 1.0), stress * stretch])
+    }
+
+    /// Strain of the model's elements over what the first column holds.
+    fn strain_per_unit(self) -> f64 {
+        match self {
+            Self::Bending => HINGE_STRAIN_PER_CURVATURE,
+            _ => 1.0,
+        }
+    }
+}
+
+/// Engineering strain and nominal stress, as they head a file.
+pub const ENGINEERING: [&str; 2] = ["engineering_strain", "nominal_stress_n_per_m"];
+
+/// A table of a curve, as it stands in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveFile {
+    /// Stretch and shear, or bending.
+    pub kind: Kind,
+    /// Strains, or curvatures in 1/m; ascending.
+    pub strains: Vec<f64>,
+    /// Stresses in N/m, or moments per width in N; a row each.
+    pub stresses: Vec<f64>,
+    /// Secant stiffnesses in N/m, or flexural rigidities in N·m, where the file has the column.
+    pub stiffnesses: Option<Vec<f64>>,
+    /// Lower and upper side of a band on the stress, each where the file has the column; NaN where a row has none.
+    pub band: [Option<Vec<f64>>; 2],
+    path: PathBuf,
+    lines: Vec<usize>,
+}
+
+impl CurveFile {
+    /// A table of rows that come from elsewhere, without other columns.
+    ///
+    /// * `path`, `lines` — where each row comes from, for messages
+    ///
+    /// # Errors
+    /// No row; strains that do not ascend.
+    pub fn new(
+        kind: Kind,
+        strains: Vec<f64>,
+        stresses: Vec<f64>,
+        path: &Path,
+        lines: Vec<usize>,
+    ) -> Result<Self> {
+        let band = [None, None];
+        let file = Self { kind, strains, stresses, stiffnesses: None, band, path: path.to_path_buf(), lines };
+        file.check_order()?;
+        Ok(file)
+    }
+
+    fn check_order(&self) -> Result<()> {
+        let strains = &self.strains;
+        if strains.is_empty() {
+            return Err(self.refuse(None, "row", "nothing below the header", "one row at least"));
+        }
+        let Some(row) = (1..strains.len()).find(|&row| strains[row] <= strains[row - 1]) else {
+            return Ok(());
+        };
+        let relation = if strains[row] == strains[row - 1] { "the same as" } else { "below" };
+        let found = format!("{}, {relation} the row before", strains[row]);
+        let expected = format!("above {}: rows in ascending order, each once", strains[row - 1]);
+        Err(self.refuse(Some(row), self.kind.columns()[0], found, expected))
+    }
+
+    /// The curve of a component in a model, with a control point at every row from zero on.
+    ///
+    /// Rows below zero are not control points: how stress is read there is the rule `negative`. They must agree with
+    /// it within 1 % of the table's largest stress (a shear table of both sides must be odd). Where such rows exist and
+    /// none is at zero, a control point is put there.
+    ///
+    /// # Errors
+    /// A table of another kind, or of another model's strain; bending of springs, whose tables belong to a grid; no row at zero where the table
+    /// starts above it; a stress at zero; fewer than two rows from zero on; a stiffness column that is not the stress
+    /// over the strain; rows below zero that disagree.
+    pub fn curve(
+        &self,
+        component: Component,
+        model: Model,
+        negative: NegativeStrain,
+    ) -> Result<StiffnessCurve> {
+        self.check_component(component, model)?;
+        let [axis, stiffness, stress, ..] = self.kind.columns();
+        let scale = self.kind.strain_per_unit();
+        let zero = ZERO * self.largest_strain();
+        let first = self.strains.partition_point(|&strain| strain <= zero);
+        let below = self.strains.partition_point(|&strain| strain < -zero);
+        let largest = self.largest_stress();
+        if self.strains.len() - first < 1 {
+            return Err(self.refuse(None, axis, "no row above zero", "one row above zero at least"));
+        }
+        if first - below > 1 {
+            let found = format!("{}, as good as the row before", self.strains[below + 1]);
+            return Err(self.refuse(
+                Some(below + 1),
+                axis,
+                found,
+                "rows apart by 1e-9 of the largest at least",
+            ));
+        }
+        let at_zero = (below < first).then_some(below);
+        match at_zero {
+            Some(row) if self.stresses[row].abs() > ZERO * largest => {
+                let found = format!("{} at zero", self.stresses[row]);
+                return Err(self.refuse(
+                    Some(row),
+                    stress,
+                    found,
+                    "0 there: what is not strained is free of stress",
+                ));
+            }
+            None if below == 0 => {
+                let found = format!("{} in the first row", self.strains[0]);
+                return Err(self.refuse(Some(0), axis, found, format!("0 there, with {stress} 0")));
+            }
+            _ => {}
+        }
+        let secants: Vec<f64> = (first..self.strains.len())
+            .map(|row| match &self.stiffnesses {
+                Some(stiffnesses) => self.stated(row, stiffnesses[row], largest),
+                None => Ok(self.stresses[row] / self.strains[row]),
+            })
+            .collect::<Result<_>>()?;
+        let start = match (&self.stiffnesses, at_zero) {
+            (Some(stiffnesses), Some(row)) => stiffnesses[row],
+            _ => secants[0],
+        };
+        let strains = std::iter::once(0.0).chain(self.strains[first..].iter().map(|strain| scale * strain));
+        let stiffnesses = std::iter::once(start).chain(secants).map(|k| k / scale).collect();
+        let curve = StiffnessCurve::new(strains.collect(), stiffnesses, negative).map_err(|error| {
+            let row = match error {
+                // The stiffness at zero that no row states is that of the first row above.
+                cloth_sim::error::Error::Curve { point, .. } => Some(first + point.saturating_sub(1)),
+                _ => None,
+            };
+            self.refuse(row, stiffness, error.to_string(), "strains apart and finite stiffnesses")
+        })?;
+        self.check_below_zero(&curve, below, largest)?;
+        Ok(curve)
+    }
+
+    /// The same rows and columns with the stresses of another curve; a band keeps its width about the stress.
+    ///
+    /// * `curve` — over the model's strains, as [`CurveFile::curve`] gives it
+    ///
+    /// Without a stiffness column one is added: the stress alone does not tell the stiffness at zero, and the file would
+    /// be read as another curve.
+    pub fn with_curve(&self, curve: &StiffnessCurve) -> Self {
+        let scale = self.kind.strain_per_unit();
+        let stress: Vec<f64> = self.strains.iter().map(|&strain| curve.stress(scale * strain)).collect();
+        let stiffness = |(&strain, stress): (&f64, &f64)| match curve
+            .strains()
+            .binary_search_by(|knot| knot.total_cmp(&(scale * strain)))
+        {
+            Ok(point) => scale * curve.stiffnesses()[point],
+            Err(_) if strain == 0.0 => scale * curve.stiffnesses()[0],
+            Err(_) => stress / strain,
+        };
+        let shift = |side: &Option<Vec<f64>>| {
+            let rows = side.as_ref()?.iter().zip(&stress).zip(&self.stresses);
+            Some(rows.map(|((side, new), old)| side + (new - old)).collect())
+        };
+        Self {
+            stiffnesses: Some(self.strains.iter().zip(&stress).map(stiffness).collect()),
+            band: [shift(&self.band[0]), shift(&self.band[1])],
+            stresses: stress,
+            ..self.clone()
+        }
+    }
+
+    /// The same rows with all strains and all stresses multiplied: stiffnesses and bands follow.
+    pub fn scaled(&self, strain: f64, stress: f64) -> Self {
+        let times = |values: &[f64], factor: f64| values.iter().map(|value| value * factor).collect();
+        Self {
+            strains: times(&self.strains, strain),
+            stresses: times(&self.stresses, stress),
+            stiffnesses: self.stiffnesses.as_ref().map(|values| times(values, stress / strain)),
+            band: self.band.each_ref().map(|side| side.as_ref().map(|values| times(values, stress))),
+            ..self.clone()
+        }
+    }
+
+    /// A row for every control point of another curve, below the rows of this one that lie below zero; without a band,
+    /// which is known of this one's rows only.
+    pub fn with_points(&self, curve: &StiffnessCurve) -> Self {
+        let scale = self.kind.strain_per_unit();
+        let zero = ZERO * self.largest_strain();
+        let below = self.strains.iter().take_while(|&&strain| strain < -zero);
+        let points = curve.strains().iter().map(|strain| strain / scale);
+        let strains: Vec<f64> = below.copied().chain(points).collect();
+        let rows = Self { stresses: vec![0.0; strains.len()], strains, band: [None, None], ..self.clone() };
+        rows.with_curve(curve)
+    }
+
+    /// Strain of the model's elements over what the first column holds: 1, or 3 for curvature.
+    pub fn strain_per_unit(&self) -> f64 {
+        self.kind.strain_per_unit()
+    }
+
+    /// The file's text, with the columns that are there; beside Green strain engineering strain and nominal stress.
+    pub fn to_csv(&self) -> String {
+        let [axis, stiffness, stress, low, high] = self.kind.columns();
+        let [strains, stresses] = self.engineering();
+        let columns: Vec<(&str, &[f64])> = [
+            (axis, Some(&self.strains)),
+            (stiffness, self.stiffnesses.as_ref()),
+            (stress, Some(&self.stresses)),
+            (low, self.band[0].as_ref()),
+            (high, self.band[1].as_ref()),
+            (ENGINEERING[0], strains.as_ref()),
+            (ENGINEERING[1], stresses.as_ref()),
+        ]
+        .into_iter()
+        .filter_map(|(name, values)| Some((name, &values?[..])))
+        .collect();
+        let mut text = columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",") + "\n";
+        for row in 0..self.strains.len() {
+            for (column, (_, values)) in columns.iter().enumerate() {
+                let comma = if column == 0 { "" } else { "," };
+                let value = if values[row].is_nan() { String::new() } else { values[row].to_string() };
+                let _ = write!(text, "{comma}{value}");
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The columns beside Green strain and its stress.
+    fn engineering(&self) -> [Option<Vec<f64>>; 2] {
+        let rows = self.strains.iter().zip(&self.stresses);
+        let rows: Option<Vec<_>> = rows.map(|(&e, &s)| self.kind.engineering(e, s)).collect();
+        [0, 1].map(|column| rows.as_ref().map(|rows| rows.iter().map(|row| row[column]).collect()))
+    }
+
+    /// Refuses columns beside Green strain that say something else than it does.
+    fn check_beside(&self, columns: [Option<Vec<f64>>; 2]) -> Result<()> {
+        for ((given, own), name) in columns.iter().zip(self.engineering()).zip(ENGINEERING) {
+            let (Some(given), Some(own)) = (given, own) else { continue };
+            let largest = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            let differs = |row: &usize| !((given[*row] - own[*row]).abs() <= 1e-6 * largest);
+            if let Some(row) = (0..own.len()).find(differs) {
+                let [axis, _, stress, ..] = self.kind.columns();
+                let expected =
+                    format!("{}, from {axis} and {stress} (leave the column out after an edit)", own[row]);
+                return Err(self.refuse(Some(row), name, given[row].to_string(), expected));
+            }
+        }
+        Ok(())
+    }
+
+    /// True if a row lies below zero.
+    pub fn is_two_sided(&self) -> bool {
+        self.strains[0] < -ZERO * self.largest_strain()
+    }
+
+    fn largest_strain(&self) -> f64 {
+        self.strains.iter().fold(0.0, |largest: f64, strain| largest.max(strain.abs()))
+    }
+
+    fn largest_stress(&self) -> f64 {
+        self.stresses.iter().fold(0.0, |largest: f64, stress| largest.max(stress.abs()))
+    }
+
+    fn check_component(&self, component: Component, model: Model) -> Result<()> {
+        let wanted = Kind::of(component, model);
+        if self.kind != wanted && (self.kind != Kind::Membrane || wanted == Kind::Bending) {
+            let [axis, _, stress, ..] = wanted.columns();
+            let [found, ..] = self.kind.columns();
+            let expected = format!("{axis} and {stress}, as {component} of {model} has");
+            return Err(self.refuse(None, "header", format!("a column {found}"), expected));
+        }
+        if component.is_bending() && model == Model::Springs {
+            return Err(self.refuse(
+                None,
+                "model",
+                "moments over curvature for the springs of a grid that the file does not name",
+                "a material.json, whose control points are over the springs' own strain; or another model",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The stiffness that a row states, if it is the stress over the strain.
+    fn stated(&self, row: usize, stiffness: f64, largest: f64) -> Result<f64> {
+        let product = stiffness * self.strains[row];
+        if !((product - self.stresses[row]).abs() <= 1e-6 * largest) {
+            let [axis, column, stress, ..] = self.kind.columns();
+            let found = format!("{stiffness}, which times {axis} is {product}");
+            let expected = format!("{stress} {} (leave the column out after an edit)", self.stresses[row]);
+            return Err(self.refuse(Some(row), column, found, expected));
+        }
+        Ok(stiffness)
+    }
+
+    fn check_below_zero(&self, curve: &StiffnessCurve, below: usize, largest: f64) -> Result<()> {
+        let [_, _, stress, ..] = self.kind.columns();
+        for row in 0..below {
+            let expected = curve.stress(self.kind.strain_per_unit() * self.strains[row]);
+            if !((self.stresses[row] - expected).abs() <= DISAGREEMENT * largest) {
+                let found = format!("{} at {}", self.stresses[row], self.strains[row]);
+                let rule = match curve.negative() {
+                    NegativeStrain::Odd => "an odd curve, as the rows above zero say",
+                    NegativeStrain::Linear | NegativeStrain::Green => {
+                        "compression with the stiffness at zero"
+                    }
+                    NegativeStrain::Slack => "no stress in compression",
+                };
+                let expected = format!(
+                    "{expected:.6} within 1 % of the largest: {rule} (or leave the rows below zero out)"
+                );
+                return Err(self.refuse(Some(row), stress, found, expected));
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse(
+        &self,
+        row: Option<usize>,
+        field: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Error {
+        let line = row.and_then(|row| self.lines.get(row).copied());
+        Error::input(&self.path, line, field, found, expected)
+    }
+}

@@ -1,0 +1,115 @@
+//! The table's edge against the place where a sheet begins to hang.
+//!
+//! ```text
+//! height  ●──●──●__                from the first line below the table and the next one:
+//!                  ●               drop d = ½ κ (r − r₀)², so that √d is straight in r and zero at the edge r₀
+//!                    ╲●
+//! ```
+
+use super::profile::{Line, profiles, up};
+use crate::frame::{Fabric, Sequence};
+use crate::measure::median;
+use crate::notice::{Notice, Severity};
+
+/// A line is below the table by more than so many standard deviations of its mean, and by a tenth of a millimetre at least,
+/// which tables are not plane to.
+const BELOW: f64 = 6.0;
+const PLANE: f64 = 1e-4;
+
+/// Rigidity goes with the third power of the overhang: an edge off by a tenth of it is off by 30 %.
+const REFUSED: f64 = 0.1;
+
+/// An edge is off if it is by more than half of what the lines are apart, which several frames tell it to, and by more than
+/// this, m.
+const LEAST: f64 = 1e-3;
+
+/// Cloth lies so far above or below the edge's height at most, m, beside its thickness: tables and axes are off a little.
+const LEVEL: f64 = 2e-3;
+
+/// Doubts, or refuses, a sequence whose sheet begins to hang elsewhere than at the table's edge, or does not lie on the table.
+pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let Some(table) = sequence.table else { return };
+    let Some(up) = up(&table, &sequence.gravity) else { return };
+    let noise = sequence.position_noise();
+    let (mut offs, mut lengths, mut levels, mut apart) = (Vec::new(), Vec::new(), Vec::new(), 0.0f64);
+    for profile in profiles(sequence, &table, &up) {
+        let Some(begin) = Begin::of(&profile.lines, noise) else { continue };
+        offs.push(begin.outward);
+        lengths.push(begin.length);
+        levels.push(begin.level);
+        apart = apart.max(begin.apart);
+    }
+    let frames = offs.len();
+    let (Some(off), Some(length), Some(level)) = (median(offs), median(lengths), median(levels)) else {
+        return;
+    };
+    if level.abs() > LEVEL + fabric.thickness_m.unwrap_or(0.0) {
+        notices.push(Notice::doubt(
+            &sequence.name,
+            "test.toml table.edge_point_m",
+            format!(
+                "cloth that lies {:.1} mm {} the edge on its table (median of {frames} frames)",
+                1e3 * level.abs(),
+                if level > 0.0 { "above" } else { "below" }
+            ),
+            "an edge at the height of the cloth, in the axes of positions.npy",
+        ));
+    }
+    if off.abs() <= f64::max(0.5 * apart, LEAST) {
+        return;
+    }
+    let refused = off.abs() > REFUSED * length;
+    let seen = if off < 0.0 { "below the table before its edge" } else { "flat past the table's edge" };
+    notices.push(Notice {
+        severity: if refused { Severity::Refusal } else { Severity::Doubt },
+        sequence: sequence.name.clone(),
+        place: "test.toml table.edge_point_m".into(),
+        found: format!(
+            "cloth {seen}: it begins to hang {:.1} mm {} it (median of {frames} frames; lines of vertices are {:.1} mm \
+             apart)",
+            1e3 * off.abs(),
+            if off < 0.0 { "before" } else { "past" },
+            1e3 * apart
+        ),
+        expected: format!(
+            "an edge where cloth begins to hang: {:.1} mm {} along outward, in the axes of positions.npy",
+            1e3 * off.abs(),
+            if off < 0.0 { "back" } else { "on" }
+        ),
+    });
+}
+
+/// Where a sheet begins to hang.
+struct Begin {
+    /// Past the edge, m.
+    outward: f64,
+    /// How much hangs, m.
+    length: f64,
+    /// Height of what lies on the table above the edge, m.
+    level: f64,
+    /// The distance of the lines there, m.
+    apart: f64,
+}
+
+impl Begin {
+    fn of(lines: &[Line], noise: f64) -> Option<Self> {
+        // The level of the table is that of the lines farthest back.
+        let back = &lines[..(lines.len() / 8).max(2).min(lines.len())];
+        let level = median(back.iter().map(|line| line.height).collect())?;
+        let below = |line: &Line| f64::max(BELOW * noise * line.error, PLANE) < level - line.height;
+        // From the tip inward, so that a single line on the table does not count.
+        let first = lines.iter().rposition(|line| !below(line))? + 1;
+        let [flat, hanging] = [&lines[..first], &lines[first..]];
+        let [a, b] = [hanging.first()?, hanging.get(1)?];
+        let root = |line: &Line| (level - line.height).sqrt();
+        let steeper = root(b) - root(a);
+        if !(steeper > 0.0) {
+            return None;
+        }
+        let begin = a.rest - root(a) * (b.rest - a.rest) / steeper;
+        // Cloth that lies flat is as far out as at rest, but for where it was pushed.
+        let pushed = median(flat.iter().map(|line| line.outward - line.rest).collect()).unwrap_or(f64::NAN);
+        let last = hanging[hanging.len() - 1];
+        Some(Self { outward: begin + pushed, length: last.rest - begin, level, apart: b.rest - a.rest })
+    }
+}

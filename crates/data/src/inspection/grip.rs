@@ -1,0 +1,82 @@
+//! Clips that hold part of a side, or list part of what they hold.
+//!
+//! ```text
+//!  ┃●──●──●       listed
+//!  ┃●──●──●
+//!   ○──●──●  d    beside: a free one lags by about ε d along the pull, one that the clip holds does not
+//! ```
+
+use crate::frame::{Fabric, Kind, Sequence, is_seen};
+use crate::measure::{clip_centres, mean, moved};
+use crate::notice::Notice;
+use crate::rectangle::{Rectangle, bounds};
+use nalgebra::Vector2;
+
+/// A vertex that lags by less than this share of ε d is held; a free one lags by half of it at least.
+const HELD: f64 = 0.25;
+/// The lags are looked at where together they would be so many times the noise.
+const SURE: f64 = 10.0;
+/// Vertices on one line lie so near it, as a share of the specimen: rounding.
+const TIE: f64 = 1e-6;
+/// Fewer vertices may be cut askew.
+const FEWEST: usize = 3;
+
+/// A clip that grips this share of its side grips all of it.
+const WHOLE: f64 = 0.98;
+
+/// Doubts a stretched specimen whose clips do not hold whole sides: with 83 % of a side a fit that leaves shear out makes denim
+/// 12 % too stiff. More so where a clip holds more than it says.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+    if stretched && sequence.clips.len() == 2 {
+        notices.extend([0, 1].into_iter().filter_map(|clip| holds_part(sequence, clip)));
+    }
+}
+
+fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
+    let Rectangle { flat, size, .. } = Rectangle::of(sequence).ok()?;
+    let listed = &sequence.clips[clip].vertices;
+    let centre = |clip: usize| mean(sequence.clips[clip].vertices.iter().map(|&vertex| flat[vertex]));
+    let between = centre(1 - clip) - centre(clip);
+    let (pull, across) = if between.x.abs() > between.y.abs() { (0, 1) } else { (1, 0) };
+    let [low, high] = bounds(listed.iter().map(|&vertex| flat[vertex]));
+    let share = (high[across] - low[across]) / size[across];
+    if share >= WHOLE {
+        return None;
+    }
+    let tie = TIE * between.norm();
+    let alongside = |place: &Vector2<f64>| place[pull] >= low[pull] - tie && place[pull] <= high[pull] + tie;
+    let beside = flat.iter().enumerate().filter(|(_, place)| alongside(place)).map(|(vertex, place)| {
+        // What is farther off than half the way to the other clip lags as that does.
+        let apart = f64::max(low[across] - place[across], place[across] - high[across]);
+        (vertex, apart.min(0.5 * between.norm()))
+    });
+    let beside: Vec<(usize, f64)> = beside.filter(|(_, apart)| *apart > tie).collect();
+    let rest = &sequence.mesh.positions;
+    let (mut both, mut free) = (0.0, 0.0);
+    for frame in &sequence.frames {
+        let (Some(positions), [_, _]) = (&frame.positions, &frame.poses[..]) else { continue };
+        let centres = clip_centres(sequence, frame);
+        let now = centres[1 - clip] - centres[clip];
+        let strain = now.norm() / between.norm() - 1.0;
+        let Some(toward) = now.try_normalize(0.0).filter(|_| strain > 0.0) else { continue };
+        for &(vertex, apart) in beside.iter().filter(|(vertex, _)| is_seen(&positions[*vertex])) {
+            let lag = (positions[vertex] - moved(&frame.poses[clip], &rest[vertex])).dot(&toward);
+            both += lag * strain * apart;
+            free += (strain * apart).powi(2);
+        }
+    }
+    let told = beside.len() >= FEWEST && free.sqrt() >= SURE * sequence.position_noise();
+    let more = match told && both <= HELD * free {
+        true => format!(", and {} vertices beside them that were seen to move as it does", beside.len()),
+        false => String::new(),
+    };
+    let name = &sequence.clips[clip].name;
+    Some(Notice::doubt(
+        &sequence.name,
+        "test.toml clips.vertices",
+        format!("vertices of clip {name} along {:.0} % of its side{more}", 100.0 * share),
+        "all that it holds, and that the whole side: cloth beside a clip is sheared, which a fit of stretch leaves out, so \
+         that the curve comes out too stiff",
+    ))
+}

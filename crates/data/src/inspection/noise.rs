@@ -1,0 +1,21 @@
+//! The noise that is declared.
+
+use crate::frame::{Fabric, Sequence};
+use crate::notice::Notice;
+
+/// Refuses a noise by which nothing can be weighed. Files cannot hold one; a caller's set can.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let Some(noise) = sequence.noise else { return };
+    for (field, deviation) in [("position_m", noise.position_m), ("force_n", noise.force_n)] {
+        let Some(deviation) = deviation.filter(|&deviation| !(deviation > 0.0 && deviation.is_finite()))
+        else {
+            continue;
+        };
+        notices.push(Notice::refusal(
+            &sequence.name,
+            format!("test.toml noise.{field}"),
+            deviation.to_string(),
+            "a standard deviation above 0, or none where it is not known",
+        ));
+    }
+}

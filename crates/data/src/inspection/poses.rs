@@ -1,0 +1,117 @@
+//! Poses of clips against the vertices that they hold: where they are, and how far they move.
+
+use crate::frame::{Fabric, Sequence, is_seen};
+use crate::measure::{mean, moved};
+use crate::notice::Notice;
+use nalgebra::Vector3;
+
+/// Vertices may be seen so many times the noise of a coordinate away: √3 is noise itself, and a pose has some too.
+const NOISE: f64 = 6.0;
+
+/// And by this share of the specimen's size: less changes a strain by little.
+const SHARE: f64 = 2e-3;
+
+/// Poses and shapes may move a clip by lengths that differ by this share, which no curve feels, and by so many standard
+/// deviations.
+const SAME_MOTION: f64 = 5e-3;
+const SURE: f64 = 4.0;
+
+/// Refuses a sequence in which a clip's vertices were seen elsewhere than its poses put them; doubts one in which they were
+/// seen to move farther, or less far.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    notices.extend(elsewhere(sequence).or_else(|| motion(sequence)));
+}
+
+fn elsewhere(sequence: &Sequence) -> Option<Notice> {
+    let allowed = f64::max(NOISE * sequence.position_noise(), SHARE * sequence.area().sqrt());
+    let mut worst: Option<(usize, usize, f64)> = None;
+    let mut off = 0;
+    for index in 0..sequence.frames.len() {
+        let clips = (0..sequence.clips.len()).filter_map(|clip| Some((clip, apart(sequence, index, clip)?)));
+        let Some((clip, apart)) =
+            clips.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, apart)| *apart > allowed)
+        else {
+            continue;
+        };
+        off += 1;
+        if worst.is_none_or(|(_, _, most)| apart > most) {
+            worst = Some((index, clip, apart));
+        }
+    }
+    let (frame, clip, apart) = worst?;
+    Some(Notice::refusal(
+        &sequence.name,
+        "clips.csv against positions.npy",
+        format!(
+            "vertices of clip {} {:.2} mm (rms) from where its pose puts them in frame {frame}, and too far in {off} of {} \
+             frames",
+            sequence.clips[clip].name,
+            1e3 * apart,
+            sequence.frames.len()
+        ),
+        format!(
+            "at most {:.2} mm: a pose maps rest points to where they are, x = R(q) x_rest + t, qw first, about the world's \
+             origin; vertices hidden by a clip are NaN",
+            1e3 * allowed
+        ),
+    ))
+}
+
+/// The length of the clips' motion as seen over that of their poses: the slope of one over the other, through all frames.
+fn motion(sequence: &Sequence) -> Option<Notice> {
+    let (mut both, mut posed, mut variance) = (0.0, 0.0, 0.0);
+    for clip in 0..sequence.clips.len() {
+        let middles: Vec<_> = (0..sequence.frames.len()).filter_map(|i| middles(sequence, i, clip)).collect();
+        let [seen, put] = [0, 1].map(|of| mean(middles.iter().map(|middle| middle.places[of])));
+        for Middles { places, vertices } in &middles {
+            let [seen, put] = [places[0] - seen, places[1] - put];
+            both += seen.dot(&put);
+            posed += put.norm_squared();
+            variance += (sequence.position_noise() * put.norm()).powi(2) / *vertices as f64;
+        }
+    }
+    let off = both / posed - 1.0;
+    (off.abs() > f64::max(SAME_MOTION, SURE * variance.sqrt() / posed)).then(|| {
+        Notice::doubt(
+            &sequence.name,
+            "clips.csv against positions.npy",
+            format!(
+                "vertices in the clips that were seen to move {:.1} % {} than their poses",
+                100.0 * off.abs(),
+                if off > 0.0 { "farther" } else { "less far" }
+            ),
+            "one scale: poses and shapes of one calibration, in metres",
+        )
+    })
+}
+
+/// Where the middle of a clip's vertices was seen, and where its pose puts it.
+struct Middles {
+    places: [Vector3<f64>; 2],
+    vertices: usize,
+}
+
+/// Of the vertices that were seen; `None` of none.
+fn middles(sequence: &Sequence, frame: usize, clip: usize) -> Option<Middles> {
+    let frame = &sequence.frames[frame];
+    let (positions, pose) = (frame.positions.as_ref()?, frame.poses.get(clip)?);
+    let held = sequence.clips[clip].vertices.iter().copied();
+    let seen: Vec<usize> = held.filter(|&vertex| is_seen(&positions[vertex])).collect();
+    let places = [
+        mean(seen.iter().map(|&vertex| positions[vertex])),
+        mean(seen.iter().map(|&vertex| moved(pose, &sequence.mesh.positions[vertex]))),
+    ];
+    (!seen.is_empty()).then_some(Middles { places, vertices: seen.len() })
+}
+
+/// Root mean square distance of a clip's vertices, as seen, from where its pose puts them, m; `None` where none was seen.
+fn apart(sequence: &Sequence, frame: usize, clip: usize) -> Option<f64> {
+    let frame = &sequence.frames[frame];
+    let (positions, pose) = (frame.positions.as_ref()?, frame.poses.get(clip)?);
+    let offsets = sequence.clips[clip]
+        .vertices
+        .iter()
+        .map(|&vertex| -> Vector3<f64> { positions[vertex] - moved(pose, &sequence.mesh.positions[vertex]) });
+    let squares: Vec<f64> = offsets.map(|offset| offset.norm_squared()).filter(|s| s.is_finite()).collect();
+    (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+}

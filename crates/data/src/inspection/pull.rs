@@ -1,0 +1,68 @@
+//! A pulled strip by itself: what the forces on its clips and the clips' distance say without any simulation.
+//!
+//! ```text
+//! force                    ╱│ spike: one reading off its neighbours
+//!   │                    ╱  │
+//!   │      rest        ╱    ╲ breakage: it falls while the strip gets longer
+//!   │ slack, tension, ╱
+//!   │ zero off   ___╱           magnitude: N/m of a cloth?
+//!   └──────────────────────── separation of the clips
+//! ```
+
+mod breakage;
+mod magnitude;
+mod polynomial;
+mod reading;
+mod rest;
+mod spike;
+mod steps;
+#[cfg(test)]
+mod tests;
+mod toe;
+
+use crate::frame::{Fabric, Sequence};
+use crate::notice::Notice;
+use reading::{Pull, noise, points};
+
+pub(crate) use reading::Reading;
+
+pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let numbers: Vec<usize> = (0..sequence.frames.len()).collect();
+    notices.extend(inspect(sequence, Some(fabric.areal_density_kg_m2), "forces.csv frame", &numbers));
+}
+
+/// Leaves out the frames after a breakage, and tells of all that was noticed.
+///
+/// * `areal_density` — kg/m², if the forces' size is to be judged
+/// * `counted` — what the frames' numbers count
+/// * `numbers` — one a frame
+pub(crate) fn inspect(
+    sequence: &mut Sequence,
+    areal_density: Option<f64>,
+    counted: &str,
+    numbers: &[usize],
+) -> Vec<Notice> {
+    let Some(mut pull) = Pull::of(sequence, counted, numbers) else { return Vec::new() };
+    let mut notices = Vec::new();
+    let spikes = spike::find(&pull);
+    notices.extend(spike::notice(&pull, &spikes));
+    // One bad reading is not to pass for a breakage or a preload.
+    pull.leave_out(&spikes);
+    if let Some(breakage) = breakage::find(&pull) {
+        let last = pull.readings[breakage.last].number;
+        notices.push(breakage.notice(&pull));
+        pull.readings.truncate(breakage.last + 1);
+        sequence.frames.truncate(numbers.iter().take_while(|&&number| number <= last).count());
+    }
+    notices.extend(steps::check(&pull));
+    notices.extend(rest::check(&pull));
+    notices.extend(areal_density.and_then(|density| magnitude::check(&pull, density)));
+    notices
+}
+
+/// The free length of a strip, m: where a loading comes to zero, if it is followed down from a force; `None` if it does not.
+///
+/// * `force` — N
+pub(crate) fn free_length(loading: &[Reading], force: f64) -> Option<f64> {
+    toe::free_length(&points(loading), force, noise(loading))
+}

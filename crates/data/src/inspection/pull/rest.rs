@@ -1,0 +1,174 @@
+//! A strip that is not free where it should be: put in under tension, slack, or with a load cell whose zero is off.
+
+use super::polynomial::Polynomial;
+use super::reading::{Pull, digits};
+use super::toe::{self, CLEAR, Toe};
+use crate::notice::{Notice, Severity};
+
+/// Of the clips' travel: readings so near the gauge length are at it, and slack so short does not matter.
+const NEAR: f64 = 0.01;
+/// Of the clips' travel: over so far a force hardly changes, and it is no tension.
+const FAR: f64 = 0.5;
+/// Of the stress at the first reading: a free length that is unsure by more makes a band useless.
+const UNSURE: f64 = 0.05;
+/// Of the force of the first reading: less may be the curve's own bend.
+const SHARE: f64 = 0.3;
+/// Of the span of the first readings, or of the slack: from so near they are followed down to rest.
+const CLOSE: f64 = 0.25;
+/// Of the largest force: an error that matters however little it shifts the free length.
+const LARGE: f64 = 0.01;
+
+/// Judges the force at the gauge length, and where force begins.
+pub(super) fn check(pull: &Pull) -> Vec<Notice> {
+    let (loading, near) = (pull.first_loading(), NEAR * pull.travel());
+    let Some([first, _]) = loading.first().copied() else { return Vec::new() };
+    if first > pull.gauge + near {
+        return beyond(pull, &loading).into_iter().collect();
+    }
+    match toe::find(&loading, pull.threshold(), near) {
+        Some(toe) => seen(pull, &toe, near),
+        None => unseen(pull, &loading, near).into_iter().collect(),
+    }
+}
+
+/// True if a force where there should be none makes a curve wrong.
+///
+/// * `shift` — by how much the free length is less if it is a tension, m
+fn matters(pull: &Pull, force: f64, shift: Option<f64>) -> bool {
+    let shifts = shift.is_some_and(|shift| (NEAR..FAR).contains(&(shift.abs() / pull.travel())));
+    force.abs() > pull.threshold() && (shifts || force.abs() > LARGE * pull.largest_force())
+}
+
+/// The strip was never seen at rest: its first readings tell whether it was free there, and how surely.
+fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
+    let (reading, start) = (pull.readings.first()?, toe::first_rows(loading, pull.noise)?);
+    let force = start.at(pull.gauge);
+    let length = start.rises_through(0.0);
+    let slack = length.map(|length| length - pull.gauge).filter(|slack| *slack > 0.0);
+    let close = match slack {
+        // A curve that bends up from rest on looks like slack from afar.
+        Some(slack) => reading.separation - pull.gauge < (1.0 + CLOSE) * slack,
+        None => reading.separation - pull.gauge < CLOSE * start.span(),
+    };
+    let sure = force.abs() > SHARE * reading.force.abs() + 4.0 * start.error(pull.gauge)?;
+    if close && sure && matters(pull, force, length.map(|length| pull.gauge - length)) {
+        let found = format!(
+            "first readings that come to {} N at the gauge length, {:.2} mm",
+            digits(force, 3),
+            1e3 * pull.gauge
+        );
+        let expected = match length.filter(|length| *length > pull.gauge) {
+            Some(length) => format!("none: the strip was slack, {}; or the zero is off", free_length(length)),
+            None => format!("none: {}", cause(pull, force, length.map(|length| (length, None)), None)),
+        };
+        return Some(pull.notice(Severity::Doubt, reading, found, expected));
+    }
+    let unsure = length_error(&start, start.rises_through(0.0)?)?;
+    // dσ/σ = −dL F′/F
+    let share = unsure * start.slope(reading.separation) / start.at(reading.separation);
+    (share > UNSURE && !pull.has_shapes).then(|| {
+        let out = 1e3 * (reading.separation - pull.gauge);
+        let found = format!(
+            "{} N in the first reading, {out:.2} mm beyond the free length, {:.2} mm",
+            digits(reading.force, 3),
+            1e3 * pull.gauge
+        );
+        let expected = format!(
+            "readings from rest on: of these the first tell the free length to ± {:.2} mm only, which makes the stress there ± \
+             {:.0} % unsure beside its band, if it is not known otherwise",
+            1e3 * unsure,
+            100.0 * share
+        );
+        pull.notice(Severity::Doubt, reading, found, expected)
+    })
+}
+
+/// How sure a place is where readings are followed down to zero: half of its 95 % band, m.
+fn length_error(start: &Polynomial, length: f64) -> Option<f64> {
+    Some(1.96 * start.error(length)? / start.slope(length))
+}
+
+/// The strip was seen slack.
+fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Notice> {
+    let first = &pull.readings[0];
+    let mut notices = Vec::new();
+    if matters(pull, level, shift) {
+        let found = format!("{} N while the strip is slack", digits(level, 3));
+        let expected = format!("none: the load cell's zero is off, {}", taking_off(level));
+        notices.push(pull.notice(Severity::Doubt, first, found, expected));
+    }
+    let gauge = format!("the gauge length, {:.2} mm", 1e3 * pull.gauge);
+    // A strip that was stretched before is longer than it was, which is no fault.
+    if length > pull.gauge + near && pull.cycle == 0 {
+        let taut = pull.readings.iter().find(|reading| reading.separation >= length).unwrap_or(first);
+        let found = format!("no force until the clamps are {:.2} mm apart", 1e3 * length);
+        let expected = format!("force beyond {gauge}: the strip was slack, {}", free_length(length));
+        notices.push(pull.notice(Severity::Doubt, taut, found, expected));
+    }
+    if length < pull.gauge - near {
+        let found = format!("force from {:.2} mm between the clamps on", 1e3 * length);
+        let expected = format!("none below {gauge}: {}", free_length(length));
+        notices.push(pull.notice(Severity::Doubt, first, found, expected));
+    }
+    notices
+}
+
+/// There is force as soon as there is a reading.
+fn unseen(pull: &Pull, loading: &[[f64; 2]], near: f64) -> Option<Notice> {
+    let at_gauge = loading.partition_point(|row| row[0] < pull.gauge - near);
+    let (rows, reading) = (loading.get(at_gauge..)?, pull.readings.get(at_gauge)?);
+    // Pulled step by step it may be free just before.
+    let is_free = |row: &[f64; 2]| row[1].abs() <= pull.threshold() && row[0] > pull.gauge - 2.0 * near;
+    if loading[..at_gauge].iter().any(is_free) {
+        return None;
+    }
+    let start = toe::first_rows(rows, pull.noise)?;
+    let (force, length) = (start.at(pull.gauge), start.rises_through(0.0));
+    // A parabola that does not come to zero is steeper here than further down, where it is no matter of noise.
+    let tangent = || (force > CLEAR * pull.noise).then(|| force / start.slope(pull.gauge));
+    let shift = length.map(|length| pull.gauge - length).or_else(tangent);
+    let wrong = [reading.force, force].iter().all(|force| matters(pull, *force, shift));
+    if !wrong || reading.force * force < 0.0 {
+        return None;
+    }
+    let before = loading[..at_gauge].first().map(|row| row[1]);
+    let after = || toe::find(&pull.last_unloading(), pull.threshold(), near).map(|toe| toe.level);
+    let found = format!("{} N at the gauge length, {:.2} mm", digits(force, 3), 1e3 * pull.gauge);
+    let length = length.map(|length| (length, length_error(&start, length)));
+    let expected = format!("none: {}", cause(pull, force, length, before.or_else(after)));
+    Some(pull.notice(Severity::Doubt, reading, found, expected))
+}
+
+/// Why there is force at the gauge length.
+///
+/// * `length` — the free length if it is a tension, and half of its band, m
+/// * `slack` — what the load cell read while the strip was slack, if it was seen so, N
+fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Option<f64>) -> String {
+    let zero = format!("the load cell's zero is off, {}", taking_off(force));
+    // What is followed down to nowhere is no length.
+    let tension = match length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length)) {
+        Some((length, unsure)) => format!(
+            "the strip was put in under tension, {}, where a parabola through the first readings comes to zero{}",
+            free_length(length),
+            unsure.map_or(String::new(), |unsure| format!(", ± {:.2} mm", 1e3 * unsure))
+        ),
+        None => "the strip was put in under tension, and its free length cannot be told from this".into(),
+    };
+    let is = |level: f64| slack.is_some_and(|slack| (slack - level).abs() <= pull.threshold());
+    if force < 0.0 || is(force) {
+        zero
+    } else if is(0.0) {
+        tension
+    } else {
+        format!("{tension}; or {zero}: what it reads with nothing in it tells which")
+    }
+}
+
+fn taking_off(force: f64) -> String {
+    let force = digits(force, 3);
+    format!("{force} N are to be taken off every force (import strip --replace --zero {force})")
+}
+
+fn free_length(length: f64) -> String {
+    format!("its free length is {:.2} mm (import strip --replace --free-length-m {length:.5})", 1e3 * length)
+}

@@ -1,0 +1,29 @@
+//! Shapes that are missing, or whose heights are all the same, as a camera that sees no depth has them.
+
+use crate::frame::{Fabric, HEIGHT_SEEN, Kind, Sequence, is_seen};
+use crate::notice::Notice;
+use nalgebra::Vector3;
+
+/// Refuses a bending test without shapes.
+pub(super) fn check_presence(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    if sequence.table.is_none() || sequence.frames.iter().any(|frame| frame.positions.is_some()) {
+        return;
+    }
+    notices.push(Notice::refusal(
+        &sequence.name,
+        "positions.npy",
+        "nothing",
+        "the measured shapes, there or in frames/: bending needs them",
+    ));
+}
+
+/// Says of a sheared sheet that its shapes do not tell whether it buckled.
+pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let places = sequence.frames.iter().flat_map(|frame| &frame.positions).flatten();
+    let seen: Vec<&Vector3<f64>> = places.filter(|place| is_seen(place)).collect();
+    let alike = |axis: &usize| seen.iter().all(|place| (place[*axis] - seen[0][*axis]).abs() <= HEIGHT_SEEN);
+    if sequence.kind != Kind::Shear || seen.is_empty() || !(0..3).any(|axis| alike(&axis)) {
+        return;
+    }
+    notices.push(Notice::remark(&sequence.name, "positions.npy", "one and the same height of every vertex in every frame: it was not measured", "heights as they were seen, which tell whether the sheet buckled: it is fitted as one that nobody saw"));
+}

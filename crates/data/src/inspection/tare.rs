@@ -1,0 +1,66 @@
+//! Forces on a sheet in a picture frame that is not sheared yet.
+
+use crate::frame::{Clip, Fabric, Kind, Sequence};
+use crate::measure::{clip_centres, mean};
+use crate::notice::Notice;
+use nalgebra::Vector3;
+
+/// Clips whose distances differ from those at rest by less than this share of what they ever do are at rest.
+const REST: f64 = 1e-3;
+/// Of the largest force: cords have friction, and frames are put on with a little tension.
+const SHARE: f64 = 0.1;
+/// In standard deviations.
+const SURE: f64 = 5.0;
+
+/// Doubts shear whose cords pull before anything is sheared.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    if sequence.kind != Kind::Shear {
+        return;
+    }
+    let sequence: &Sequence = sequence;
+    let up = sequence.gravity.try_normalize(0.0).unwrap_or_default();
+    // What bears the weight is no tension.
+    let in_plane = |force: Vector3<f64>| force - up * force.dot(&up);
+    // Distances between clips do not care where the set was carried.
+    let apart = |centres: &[Vector3<f64>]| -> Vec<f64> {
+        let pairs =
+            centres.iter().enumerate().flat_map(|(i, a)| centres[..i].iter().map(move |b| (a - b).norm()));
+        pairs.collect()
+    };
+    let held = |clip: &Clip| mean(clip.vertices.iter().map(|&vertex| sequence.mesh.positions[vertex]));
+    let rest = apart(&sequence.clips.iter().map(held).collect::<Vec<_>>());
+    let moved = |frame: usize| {
+        let now = apart(&clip_centres(sequence, &sequence.frames[frame]));
+        now.iter().zip(&rest).map(|(now, rest)| (now - rest).abs()).fold(0.0, f64::max)
+    };
+    let frames = 0..sequence.frames.len();
+    let clips = 0..sequence.clips.len();
+    let farthest = frames.clone().map(moved).fold(0.0, f64::max);
+    let force = |frame: usize, clip: usize| Some(in_plane(sequence.frames[frame].clip_force(clip)?));
+    let all = frames.clone().flat_map(|frame| clips.clone().filter_map(move |clip| force(frame, clip)));
+    let largest = all.map(|force| force.norm()).fold(0.0, f64::max);
+    let at_rest: Vec<usize> = frames.filter(|frame| moved(*frame) <= REST * farthest).collect();
+    // Friction of cords pulls either way before and after a cycle.
+    let tare = |clip| {
+        let forces: Vec<Vector3<f64>> = at_rest.iter().filter_map(|frame| force(*frame, clip)).collect();
+        Some((clip, mean(forces.iter().copied()).norm())).filter(|_| !forces.is_empty())
+    };
+    let Some((clip, force)) = clips.clone().filter_map(tare).max_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return;
+    };
+    let noise = sequence.force_noise();
+    if force <= f64::max(SURE * noise, SHARE * largest) {
+        return;
+    }
+    let notice = Notice::doubt(
+        &sequence.name,
+        format!("forces.csv frame {}", at_rest.first().copied().unwrap_or(0)),
+        format!("{force:.3} N on clip {} before the frame is sheared", sequence.clips[clip].name),
+        format!(
+            "none in the plane: load cells set to zero with nothing in them, and less than {:.0} % of the largest force, \
+             {largest:.3} N, of tension",
+            100.0 * SHARE
+        ),
+    );
+    notices.push(notice);
+}

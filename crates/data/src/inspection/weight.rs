@@ -1,0 +1,192 @@
+//! What the cords pull with against weight, and against each other: a specimen at rest is in balance.
+
+use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
+use crate::measure::{mean, median};
+use crate::notice::Notice;
+use nalgebra::Vector3;
+
+/// Of the weight: cords have friction, and scales are read to less.
+const SHARE: f64 = 0.1;
+
+/// In standard deviations.
+const SURE: f64 = 6.0;
+
+/// Two ratios, or two densities, are one within these factors: of a density only what clips leave over is known.
+const ONE_RATIO: f64 = 1.15;
+const ONE_DENSITY: f64 = 1.5;
+
+/// Of the forces: what cells are sure of, and what a tilt of their axes by a third of a degree makes.
+const FORCE_SHARE: f64 = 5e-3;
+
+/// Forces that vary by less than this share (rms) from frame to frame are one, but for friction of the cords.
+const ALIKE: f64 = 0.25;
+
+/// Of the larger force: cords of clips that do not move may hold by friction.
+const APART: f64 = 0.1;
+
+/// Doubts a sequence whose cords bear another weight than cloth and clips have, or do not balance each other across it.
+pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    notices.extend(unbalanced(sequence));
+    if let Some(weight) = Weight::of(fabric, sequence).filter(Weight::disagrees) {
+        notices.push(Notice::doubt(&sequence.name, "forces.csv", format!(
+                "cords that bear {:.3} N against gravity, where the cloth ({:.1} g) and the clips ({:.1} g) weigh {:.3} N",
+                weight.borne,
+                1e3 * weight.cloth,
+                1e3 * weight.clips,
+                weight.expected()
+            ), "the same: the unit or calibration of forces.csv, areal_density_kg_m2 of fabric.toml, mass_kg of the clips or \
+                       gravity_m_s2 in test.toml, or forces that were set to zero under load"));
+    }
+}
+
+/// Forces that do not add up to zero across gravity, in most frames to the same side of what they pull.
+fn unbalanced(sequence: &Sequence) -> Option<Notice> {
+    if sequence.force_direction.is_some() || sequence.clips.len() < 2 {
+        return None;
+    }
+    let up = sequence.gravity.try_normalize(0.0).unwrap_or_default();
+    let frames = sequence.frames.iter().enumerate().filter_map(|(index, frame)| {
+        let forces: Option<Vec<Vector3<f64>>> = (0..sequence.clips.len())
+            .map(|clip| frame.clip_force(clip).map(|force| force - up * force.dot(&up)))
+            .collect();
+        let forces = forces?;
+        let largest = forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        Some((index, forces.iter().sum(), largest))
+    });
+    let mut frames: Vec<(usize, Vector3<f64>, f64)> = frames.collect();
+    let noise = sequence.force_noise();
+    let allowed = SURE * noise * (sequence.clips.len() as f64).sqrt();
+    let off =
+        frames.iter().filter(|(_, sum, largest)| sum.norm() > f64::max(APART * largest, allowed)).count();
+    let count = frames.len();
+    let usual = mean(frames.iter().map(|(_, sum, _)| *sum));
+    let squares: f64 = frames.iter().map(|(_, sum, _)| (sum - usual).norm_squared()).sum();
+    let varies = (squares / count as f64).sqrt();
+    frames.sort_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
+    let (index, sum, largest) = frames.pop().filter(|_| 2 * off > count)?;
+    if varies <= f64::max(allowed, ALIKE * usual.norm()) {
+        return Some(Notice::doubt(
+            &sequence.name,
+            "test.toml gravity_m_s2",
+            format!(
+                "cords that pull the specimen alike in every frame, by {:.3}, {:.3}, {:.3} N, across gravity",
+                usual.x, usual.y, usual.z
+            ),
+            "gravity against it, if it is weight that they bear: gravity_m_s2, in the axes of forces.csv",
+        ));
+    }
+    let sum = sum.norm();
+    Some(Notice::doubt(
+        &sequence.name,
+        "forces.csv",
+        format!(
+            "cords that pull the specimen to one side in {off} of {count} frames, most in frame {index}, by {sum:.3} N where the \
+             largest force is {largest:.3} N"
+        ),
+        "forces that add up to zero across gravity: the calibration of each load cell, or cords that forces.csv leaves \
+                   out",
+    ))
+}
+
+/// Doubts tests that weigh nothing themselves by what the cords of others of the set bear: stretch where they all bear one
+/// and the same multiple of the weight, as of another unit; bending where they all tell one other areal density, to which
+/// rigidity is proportional; both where one test alone cannot tell which.
+pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
+    // What does not balance by itself says nothing of others.
+    let balanced = set.sequences.iter().filter(|sequence| unbalanced(sequence).is_none());
+    let weights = balanced.map(|sequence| Some((sequence, Weight::of(&set.fabric, sequence)?)));
+    let weighed: Vec<(&Sequence, Weight)> = weights.flatten().collect();
+    let off: Vec<&(&Sequence, Weight)> = weighed.iter().filter(|(_, weight)| weight.disagrees()).collect();
+    // Those that agree speak for the rest of the set.
+    let Some((first, weight)) = off.first().filter(|_| off.len() == weighed.len()) else { return };
+    let is_one = |values: Vec<f64>, factor: f64| {
+        let [low, high] = values.iter().fold([f64::MAX, f64::MIN], |[l, h], v| [l.min(*v), h.max(*v)]);
+        low > 0.0 && high < factor * low
+    };
+    let ratio = is_one(off.iter().map(|(_, weight)| weight.borne / weight.expected()).collect(), ONE_RATIO);
+    let shares: Option<Vec<f64>> = off.iter().map(|(_, weight)| weight.cloth_share()).collect();
+    let density = shares.is_some_and(|shares| is_one(shares, ONE_DENSITY));
+    let mut doubt = |sequence: &Sequence, place: &str, found: String, expected: &str| {
+        notices.push(Notice::doubt(&sequence.name, place, found, expected));
+    };
+    for other in &set.sequences {
+        let stretched = matches!(other.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+        if stretched && ratio && Weight::of(&set.fabric, other).is_none() {
+            let times = weight.borne / weight.expected();
+            let found = format!("a load cell that in {} reads {times:.3} times the weight", first.name);
+            let expected = "1, if it is the same cell: the unit or the calibration of forces.csv";
+            doubt(other, "forces.csv", found, expected);
+        }
+        if let Some(share) = weight.cloth_share().filter(|_| other.table.is_some() && density) {
+            let told = set.fabric.areal_density_kg_m2;
+            let found = format!(
+                "{told} kg/m², where the cords of {} bear what {:.3} kg/m² would weigh",
+                first.name,
+                share * told
+            );
+            let expected = "the same, if mass_kg of the clips is right: rigidity is proportional to it";
+            doubt(other, "fabric.toml areal_density_kg_m2", found, expected);
+        }
+    }
+}
+
+/// What cords bear, and what they should.
+struct Weight {
+    /// Against gravity, N.
+    borne: f64,
+    /// By so much it may differ, N.
+    error: f64,
+    /// Masses, kg.
+    cloth: f64,
+    clips: f64,
+    /// m/s².
+    gravity: f64,
+}
+
+impl Weight {
+    /// From the middle of all frames, about which friction of cords errs either way; `None` where there is no gravity, or no
+    /// force was measured along it.
+    fn of(fabric: &Fabric, sequence: &Sequence) -> Option<Self> {
+        let gravity = sequence.gravity.norm();
+        if gravity == 0.0 || sequence.force_direction.is_some() || sequence.clips.is_empty() {
+            return None;
+        }
+        let up = -sequence.gravity / gravity;
+        let clips = 0..sequence.clips.len();
+        let forces = sequence.frames.iter().filter_map(|frame| -> Option<Vec<Vector3<f64>>> {
+            clips.clone().map(|clip| frame.clip_force(clip)).collect()
+        });
+        let (along, sizes): (Vec<f64>, Vec<f64>) = forces
+            .map(|forces| -> (f64, f64) {
+                (forces.iter().map(|f| f.dot(&up)).sum(), forces.iter().map(|f| f.norm()).sum())
+            })
+            .unzip();
+        // A column of zeros is no measurement.
+        if along.iter().all(|force| *force == 0.0) {
+            return None;
+        }
+        let noise = sequence.force_noise();
+        let error = noise * (sequence.clips.len() as f64 / along.len() as f64).sqrt();
+        Some(Self {
+            borne: median(along)?,
+            error: f64::max(SURE * error, FORCE_SHARE * median(sizes)?),
+            cloth: sequence.area() * fabric.areal_density_kg_m2,
+            clips: sequence.clips.iter().map(|clip| clip.mass_kg).sum(),
+            gravity,
+        })
+    }
+
+    fn expected(&self) -> f64 {
+        (self.cloth + self.clips) * self.gravity
+    }
+
+    fn disagrees(&self) -> bool {
+        let least = self.expected().min(self.borne.abs());
+        (self.borne - self.expected()).abs() > f64::max(self.error, SHARE * least)
+    }
+
+    /// The cloth's mass by what is borne, as a share of that told; `None` if nothing, or less, is left for it.
+    fn cloth_share(&self) -> Option<f64> {
+        Some((self.borne / self.gravity - self.clips) / self.cloth).filter(|share| *share > 0.0)
+    }
+}

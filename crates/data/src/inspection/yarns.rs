@@ -1,0 +1,48 @@
+//! Along which yarns a sheet hangs off its table, against the kind of its test.
+
+use super::profile::outward_at_rest;
+use crate::frame::{Fabric, Kind, Sequence, is_seen};
+use crate::measure::affine_map;
+use crate::notice::Notice;
+use nalgebra::Vector3;
+
+/// A specimen is cut and laid as straight as this, °.
+const STRAIGHT: f64 = 15.0;
+
+/// So many vertices, over all frames, tell a direction.
+const FEWEST: usize = 20;
+
+/// Refuses a test of bending whose sheet hangs along other yarns than its kind says.
+pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
+    let Some(table) = sequence.table else { return };
+    let (name, expected) = match sequence.kind {
+        Kind::BendWeft => ("weft", 0.0),
+        Kind::BendBias => ("the bias", 45.0),
+        _ => ("warp", 90.0),
+    };
+    let Some(angle) = angle_from_weft(sequence, &Vector3::from(table.outward)) else { return };
+    if (angle - expected).abs() <= STRAIGHT {
+        return;
+    }
+    notices.push(Notice::refusal(&sequence.name, "test.toml kind", format!("{}, and shapes that hang over at {angle:.0}° to weft", sequence.kind), format!(
+            "{expected:.0}°, along {name}: the kind, vt of mesh.obj (u along weft), table.outward, or the order of the vertices \
+             in positions.npy"
+        )));
+}
+
+/// The angle between weft and the direction of the rest mesh that hangs out farthest, 0 to 90°.
+fn angle_from_weft(sequence: &Sequence, outward: &Vector3<f64>) -> Option<f64> {
+    let seen = sequence
+        .frames
+        .iter()
+        .filter_map(|frame| frame.positions.as_ref())
+        .flatten()
+        .filter(|place| is_seen(place));
+    if seen.count() < FEWEST {
+        return None;
+    }
+    let along = outward_at_rest(sequence, outward)?;
+    let map = affine_map(&sequence.mesh.material, &sequence.mesh.positions)?;
+    let material = (map.transpose() * map).try_inverse()? * map.transpose() * along;
+    Some(material.y.abs().atan2(material.x.abs()).to_degrees())
+}

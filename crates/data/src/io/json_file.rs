@@ -1,0 +1,116 @@
+//! A JSON file whose errors name the line and the key.
+
+use super::source::shown;
+use crate::error::{Error, Result};
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeOwned, Deserializer, Error as _, MapAccess, Visitor};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+use std::path::Path;
+
+/// The value that a text of JSON describes.
+///
+/// # Errors
+/// No JSON; a key unknown, missing or twice; a value of another type. All with line and key.
+pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut deserializer)
+        .map_err(|error| explain(path, &error.path().to_string(), error.inner()))?;
+    // What follows the value is no part of it.
+    deserializer.end().map_err(|error| explain(path, ".", &error))?;
+    Ok(value)
+}
+
+/// The same of a file that says by its `schema` which version it is: another one may well have other fields.
+///
+/// # Errors
+/// As [`parse`]; another version.
+pub fn parse_version<T: DeserializeOwned>(path: &Path, text: &str, schema: &str) -> Result<T> {
+    let value: serde_json::Value = parse(path, text)?;
+    if value["schema"] != schema {
+        return Err(Error::input(path, None, "schema", shown(&value["schema"].to_string()), schema));
+    }
+    parse(path, text)
+}
+
+/// Splits the parser's message into field, found and expected.
+fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
+    let message = error.to_string();
+    let message = message.rsplit_once(" at line ").map_or(&message[..], |(message, _)| message);
+    // A dot is the whole file, a question mark a place without a key.
+    let key = if [".", "?"].contains(&key) { "" } else { key };
+    let within = |name: &str| match key.strip_suffix(name) {
+        Some(outer) if outer.is_empty() || outer.ends_with('.') => key.to_string(),
+        _ if key.is_empty() => name.to_string(),
+        _ => format!("{key}.{name}"),
+    };
+    let name = || message.split('`').nth(1).unwrap_or_default();
+    let (key, found, expected) = if message.starts_with("missing field") {
+        (within(name()), "nothing", "a value")
+    } else if message.starts_with("duplicate field") {
+        (within(name()), "it twice", "every key once")
+    } else if message.starts_with("unknown field") {
+        (
+            within(name()),
+            "an unknown key",
+            message.split_once(", expected ").map_or("none", |(_, known)| known),
+        )
+    } else {
+        let (found, expected) = message.split_once(", expected ").unwrap_or((message, "JSON"));
+        // No value where the file begins: it is another kind of file.
+        let is_other = key.is_empty() && found == "expected value";
+        let (found, expected) =
+            if is_other { ("no JSON", "a JSON file, as material.json") } else { (found, expected) };
+        let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
+        let key = if key.is_empty() { "JSON" } else { key };
+        (key.to_string(), found, if expected == "f64" { "a number" } else { expected })
+    };
+    Error::input(path, error.line(), shown(&key), shown(found), expected.replace('`', ""))
+}
+
+/// A value that may be left out, but not stand there as null.
+///
+/// # Errors
+/// Null, or another type.
+pub fn there<'de, D: Deserializer<'de>, T: DeserializeOwned>(
+    deserializer: D,
+) -> std::result::Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
+}
+
+/// A map with every key once: read plainly, the last of several would count in silence.
+///
+/// # Errors
+/// A key that stands twice.
+pub fn unique<'de, D, K, V>(deserializer: D) -> std::result::Result<BTreeMap<K, V>, D::Error>
+where
+    D: Deserializer<'de>,
+    K: DeserializeOwned + Ord,
+    V: DeserializeOwned,
+{
+    struct Unique<K, V>(PhantomData<(K, V)>);
+
+    impl<'de, K: DeserializeOwned + Ord, V: DeserializeOwned> Visitor<'de> for Unique<K, V> {
+        type Value = BTreeMap<K, V>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a map")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> std::result::Result<Self::Value, A::Error> {
+            let mut map = BTreeMap::new();
+            // As text first, which names the key in the path of what is wrong below it.
+            while let Some(name) = entries.next_key::<String>()? {
+                let key = K::deserialize(StrDeserializer::<A::Error>::new(&name))?;
+                if map.contains_key(&key) {
+                    return Err(A::Error::custom(format!("duplicate field `{name}`")));
+                }
+                map.insert(key, entries.next_value()?);
+            }
+            Ok(map)
+        }
+    }
+
+    deserializer.deserialize_map(Unique(PhantomData))
+}

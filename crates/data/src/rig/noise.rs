@@ -1,0 +1,136 @@
+//! The instruments: what they add to the truth.
+
+use super::protocol::Rig;
+use crate::frame::{MeasurementSet, Noise, Phase};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rand::{SeedableRng, rngs::StdRng};
+use rand_distr::{Distribution, StandardNormal};
+
+/// Standard deviation of each coordinate of an observed vertex, m (Miguel et al. 2012, §3).
+const POSITION_NOISE: f64 = 7.5e-5;
+
+/// Standard deviation of each component of a clip's force, N (Miguel et al. 2012, §3).
+const FORCE_NOISE: f64 = 3.0e-3;
+
+/// Friction of the cords, N: half the width of the hysteresis of about 0.1 N that it makes (Miguel et al.
+/// 2012, §3).
+const CORD_FRICTION: f64 = 0.05;
+
+/// The instruments of one sequence.
+pub(super) struct Instruments<'a> {
+    rig: &'a Rig,
+    /// The fabric's forces under loading over those under unloading; 1 for a fabric without hysteresis.
+    loading_ratio: f64,
+    random: StdRng,
+}
+
+impl<'a> Instruments<'a> {
+    /// Instruments with a random stream of their own.
+    pub(super) fn new(rig: &'a Rig, loading_ratio: f64, sequence: &str) -> Self {
+        let loading_ratio = if rig.fabric_hysteresis { loading_ratio } else { 1.0 };
+        Self { rig, loading_ratio, random: stream(rig.seed, sequence) }
+    }
+
+    /// Their standard deviations, if they have any.
+    pub(super) fn noise(&self) -> Option<Noise> {
+        let noise = Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE) };
+        self.rig.noise.then_some(noise)
+    }
+
+    /// A vertex as it is seen.
+    pub(super) fn position(&mut self, exact: Vector3<f64>) -> Vector3<f64> {
+        self.noisy(exact, POSITION_NOISE)
+    }
+
+    /// A cord's force as it is measured.
+    ///
+    /// ```text
+    /// fabric   hold × 2r/(1 + r) on loading, × 2/(1 + r) on unloading: the mean is the curve, the ratio r
+    /// clip     cord + weight = hold
+    /// cord     ± 0.05 N along the force: friction
+    /// ```
+    ///
+    /// * `hold` — force that holds the clip against the cloth, N
+    /// * `weight` — of the clip, N
+    pub(super) fn cord(&mut self, hold: Vector3<f64>, weight: Vector3<f64>, phase: Phase) -> Vector3<f64> {
+        let ratio = self.loading_ratio;
+        let (share, sign) = match phase {
+            Phase::Loading => (2.0 * ratio / (1.0 + ratio), 1.0),
+            Phase::Unloading => (2.0 / (1.0 + ratio), -1.0),
+            Phase::Hold => (1.0, 0.0),
+        };
+        let mut force = hold * share - weight;
+        if self.rig.cord_hysteresis {
+            force += force.try_normalize(0.0).unwrap_or_default() * (sign * CORD_FRICTION);
+        }
+        self.noisy(force, FORCE_NOISE)
+    }
+
+    /// The clips' poses as they are seen: a clip through many vertices, but let us say through one at each of
+    /// its ends. Bars that are hinged together are seen as one frame, whose corners must meet.
+    ///
+    /// * `length` — of the clips, m
+    pub(super) fn poses(
+        &mut self,
+        exact: Vec<Isometry3<f64>>,
+        hinged: bool,
+        length: f64,
+    ) -> Vec<Isometry3<f64>> {
+        if !(self.rig.noise && self.rig.clip_noise) {
+            return exact;
+        }
+        let mut common = None;
+        let mut error = || {
+            let [shift, turn] = [self.normals(POSITION_NOISE), self.normals(POSITION_NOISE / length)];
+            Isometry3::from_parts(Translation3::from(shift), UnitQuaternion::from_scaled_axis(turn))
+        };
+        exact
+            .into_iter()
+            .map(|pose| if hinged { *common.get_or_insert_with(&mut error) * pose } else { error() * pose })
+            .collect()
+    }
+
+    fn noisy(&mut self, exact: Vector3<f64>, deviation: f64) -> Vector3<f64> {
+        if self.rig.noise { exact + self.normals(deviation) } else { exact }
+    }
+
+    fn normals(&mut self, deviation: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| {
+            let sample: f64 = StandardNormal.sample(&mut self.random);
+            deviation * sample
+        })
+    }
+}
+
+/// A set with the instruments' noise, or a multiple of it, added to shapes and forces, and told to whoever fits it.
+///
+/// * `exact` — without noise, with one cord a clip
+/// * `drawn` — multiple of the instruments' noise that is added
+/// * `told` — multiple of it that the set says it has
+pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> MeasurementSet {
+    let mut set = exact.clone();
+    for sequence in &mut set.sequences {
+        let mut random = stream(seed, &sequence.name);
+        let mut normals = |deviation: f64| {
+            Vector3::from_fn(|_, _| {
+                let sample: f64 = StandardNormal.sample(&mut random);
+                drawn * deviation * sample
+            })
+        };
+        for frame in &mut sequence.frames {
+            frame.cords.iter_mut().for_each(|cord| cord.force += normals(FORCE_NOISE));
+            frame.positions.iter_mut().flatten().for_each(|place| *place += normals(POSITION_NOISE));
+        }
+        sequence.noise =
+            Some(Noise { position_m: Some(told * POSITION_NOISE), force_n: Some(told * FORCE_NOISE) });
+    }
+    set
+}
+
+/// A random stream of its own for every seed and name: leaving one out changes no other.
+pub(super) fn stream(seed: u64, name: &str) -> StdRng {
+    let mut key = [0; 32];
+    key[..8].copy_from_slice(&seed.to_le_bytes());
+    key[8..].iter_mut().zip(name.bytes()).for_each(|(place, byte)| *place = byte);
+    StdRng::from_seed(key)
+}

@@ -1,0 +1,144 @@
+//! The work folder beside an output folder: private, and nothing is followed, read or removed in it but what a run leaves.
+//!
+//! Whoever may write beside the output, or has packed the folder that it lies in, could have planted a folder of that name
+//! with links or pipes in it.
+
+use crate::error::{Error, Result};
+use std::fs::{self, DirBuilder, File, Metadata};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Makes a work folder that nobody else can enter, or takes one that a stopped run has left.
+///
+/// # Errors
+/// What is there is no folder, or not one that only this user can write; the operating system refuses.
+pub(super) fn enter(work: &Path) -> Result<()> {
+    let failed = |source| Error::io(work, source);
+    match private().create(work) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+        made => return made.map_err(failed),
+    }
+    let about = match fs::symlink_metadata(work) {
+        // Another run has ended just now: opening the lock will tell.
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        about => about.map_err(failed)?,
+    };
+    if !about.is_dir() {
+        return Err(planted(work, kind(&about), "a folder"));
+    }
+    check_owner(work, &about)
+}
+
+/// Opens a file of a work folder, or makes it.
+///
+/// # Errors
+/// What is there is no regular file, or has a second name; the operating system refuses.
+pub(super) fn open(path: &Path) -> Result<File> {
+    let failed = |source| Error::io(path, source);
+    let mut options = File::options();
+    options.read(true).write(true);
+    match fs::symlink_metadata(path) {
+        Ok(about) => check_file(path, &about)?,
+        Err(error) if error.kind() == ErrorKind::NotFound => drop(options.create_new(true)),
+        Err(error) => return Err(failed(error)),
+    }
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        // A pipe would wait for its other end.
+        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32);
+    }
+    let file = options.open(path).map_err(failed)?;
+    check_file(path, &file.metadata().map_err(failed)?)?;
+    Ok(file)
+}
+
+/// Refuses a work folder in which stands what no run leaves.
+///
+/// # Errors
+/// A link, a pipe or a device; a file for a folder, or a folder for a file; the operating system refuses.
+pub(super) fn check(work: &Path) -> Result<()> {
+    for (name, is_folder) in [("journal", false), ("new", true), ("old", true)] {
+        let path = work.join(name);
+        match fs::symlink_metadata(&path) {
+            Ok(about) if is_folder && about.is_dir() => check_tree(&path)?,
+            Ok(about) if is_folder => return Err(planted(&path, kind(&about), "a folder")),
+            Ok(about) => check_file(&path, &about)?,
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(Error::io(&path, error)),
+        }
+    }
+    Ok(())
+}
+
+/// Refuses anything but folders and regular files in a folder.
+fn check_tree(folder: &Path) -> Result<()> {
+    let failed = |source| Error::io(folder, source);
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let about = fs::symlink_metadata(&path).map_err(|source| Error::io(&path, source))?;
+        match about.is_dir() {
+            true => check_tree(&path)?,
+            false if about.is_file() => {}
+            false => return Err(planted(&path, kind(&about), "a file")),
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what is no regular file, and one with a second name, under which somebody else's would be written.
+fn check_file(path: &Path, about: &Metadata) -> Result<()> {
+    if !about.is_file() {
+        return Err(planted(path, kind(about), "a file"));
+    }
+    #[cfg(unix)]
+    if std::os::unix::fs::MetadataExt::nlink(about) > 1 {
+        return Err(planted(path, "a file with a second name elsewhere", "a file with one"));
+    }
+    Ok(())
+}
+
+/// Refuses a folder of another user, and one that others may write.
+#[cfg(unix)]
+fn check_owner(work: &Path, about: &Metadata) -> Result<()> {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(".tmp").permissions(fs::Permissions::from_mode(0o700));
+    // Not every file system keeps owners and permissions: a new folder shows how one of this user looks here.
+    let own = builder.tempdir_in(super::folder::parent(work)).and_then(|own| own.path().metadata());
+    let own = own.map_err(|source| Error::io(work, source))?;
+    let written_by_others = |about: &Metadata| about.mode() & 0o022;
+    let found = match about {
+        _ if about.uid() != own.uid() => "a folder of another user",
+        _ if written_by_others(about) & !written_by_others(&own) != 0 => "a folder that others may write",
+        _ => return Ok(()),
+    };
+    Err(planted(work, found, "a folder that only you can write"))
+}
+
+#[cfg(not(unix))]
+fn check_owner(_work: &Path, _about: &Metadata) -> Result<()> {
+    Ok(())
+}
+
+fn private() -> DirBuilder {
+    let mut builder = DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    builder
+}
+
+fn kind(about: &Metadata) -> &'static str {
+    match about {
+        _ if about.is_symlink() => "a link",
+        _ if about.is_dir() => "a folder",
+        _ if about.is_file() => "a file",
+        _ => "a pipe, socket or device",
+    }
+}
+
+fn planted(path: &Path, found: &str, expected: &str) -> Error {
+    let expected = format!("{expected}, left by a stopped run: remove it, or write to another place");
+    Error::input(path, None, "work folder", found, expected)
+}

@@ -1,0 +1,228 @@
+//! The table of one pull, or of one shear test, as a stress–strain curve, without any fit.
+//!
+//! ```text
+//! green          ε = (λ² − 1)/2    σ = F/(w λ)       second Piola–Kirchhoff stress per width: model stvk
+//! engineering    ε = λ − 1         σ = F/w           nominal stress per width: models soft-constraint, springs
+//! shear          ε = γ             σ = F/w − T γ     shear between parallel bars: all models
+//! ```
+//!
+//! F is the force, w the width at rest, λ the clamps' distance over the gauge length. The strip is taken to be in
+//! uniform strain and free to narrow, which costs nothing where weft and warp are independent. Between parallel bars that
+//! keep their distance, γ is the shift over that distance; a shear tester pulls the sheet across the shift with a tension
+//! T per width, and with w_u = (1, 0), w_v = (γ, 1) a tension along warp of energy T γ²/2 adds T γ to the force.
+//!
+//! Sources: F/(w λ) from dW = F dλ/w and dε = λ dλ; Volino et al. 2009 for shear between bars.
+
+use super::column::{Column, Quantity, Series};
+use super::rows::{SEPARATION, chosen_rows};
+use super::settings::Extension;
+use super::settings::LARGEST;
+use crate::curve_file::{CurveFile, Kind};
+use crate::error::{Error, Result};
+use crate::io::check_length;
+use crate::io::table::Table;
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+/// Which strain and stress a table is turned into.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Measure {
+    /// Green strain, second Piola–Kirchhoff stress.
+    Green,
+    /// Engineering strain, nominal stress.
+    Engineering,
+    /// Shear between parallel bars, less what a tension across them adds.
+    Shear {
+        /// That tension per width, N/m; 0 if there is none.
+        tension: f64,
+    },
+}
+
+/// What the table does not say, and what of it to take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceTable {
+    /// Width of the strip at rest, across the pull; of a sheared sheet along the bars. m.
+    pub width: f64,
+    /// Distance of the clamps at rest, m; strains need none.
+    pub gauge: Option<f64>,
+    /// How far the strip was pulled, or the bars were shifted.
+    pub extension: Extension,
+    /// The load cell's reading.
+    pub force: Column,
+    /// The rows to take, both ends included; the first below the header is 1, `usize::MAX` the last. Default: all.
+    pub rows: Option<RangeInclusive<usize>>,
+    /// Which strain and stress.
+    pub measure: Measure,
+}
+
+/// Reads a table of force over elongation as one of stress over strain.
+///
+/// Where no row is at zero and all are above it, a row without strain and stress is put before them: so the strip was at
+/// the gauge length.
+///
+/// # Errors
+/// A setting outside what it may be; not a table; a missing column or unit; a number that is not finite; clamps less than
+/// half a gauge length apart or more than ten; strains that do not ascend; a force at zero strain.
+pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
+    test.validate()?;
+    let table = Table::read_columns(path, &test.columns())?;
+    let (column, quantity) = match &test.extension {
+        Extension::Separation(column) | Extension::Displacement(column) => (column, Quantity::Length),
+        Extension::Strain(column) => (column, Quantity::Strain),
+    };
+    let [extension, force] =
+        [Series::find(&table, column, quantity)?, Series::find(&table, &test.force, Quantity::Force)?];
+    let (mut strains, mut stresses, mut lines) = (Vec::new(), Vec::new(), Vec::new());
+    for row in chosen_rows(&table, test.rows.as_ref())? {
+        let elongation = test.elongation(extension.value(&table, row)?);
+        let nominal = force.value(&table, row)? / test.width;
+        let stretch = 1.0 + elongation;
+        if !matches!(test.measure, Measure::Shear { .. }) && !SEPARATION.contains(&stretch) {
+            let expected = "0.5 to 10 (another unit, or another of separation, displacement and strain?)";
+            return Err(table.invalid(
+                row,
+                &column.name,
+                format!("{stretch} times the gauge length"),
+                expected,
+            ));
+        }
+        let (strain, stress) = match test.measure {
+            // (λ² − 1)/2 without cancellation.
+            Measure::Green => (elongation * (1.0 + 0.5 * elongation), nominal / stretch),
+            Measure::Engineering => (elongation, nominal),
+            Measure::Shear { tension } => (elongation, nominal - tension * elongation),
+        };
+        if !stress.is_finite() {
+            let found = format!("{} N on {} m", force.value(&table, row)?, test.width);
+            return Err(table.invalid(row, &test.force.name, found, "a stress below 1.8e308 N/m"));
+        }
+        strains.push(strain);
+        stresses.push(stress);
+        lines.push(table.line(row));
+    }
+    if strains.first().is_some_and(|&first| first > 0.0) {
+        strains.insert(0, 0.0);
+        stresses.insert(0, 0.0);
+        lines.insert(0, lines[0]);
+    }
+    let kind = match test.measure {
+        Measure::Green => Kind::Green,
+        Measure::Engineering => Kind::Engineering,
+        Measure::Shear { .. } => Kind::Shear,
+    };
+    CurveFile::new(kind, strains, stresses, path, lines)
+}
+
+impl ForceTable {
+    /// The names of the columns that the table must have.
+    pub fn columns(&self) -> [&str; 2] {
+        [&self.extension.column().name, &self.force.name]
+    }
+
+    fn validate(&self) -> Result<()> {
+        let refuse = |field, found: String, expected: &str| {
+            Err(Error::Setting { field, found, expected: expected.into() })
+        };
+        for (field, value) in [("width", Some(self.width)), ("gauge", self.gauge)] {
+            let Some(value) = value else { continue };
+            check_length(value, LARGEST).or_else(|expected| refuse(field, value.to_string(), &expected))?;
+        }
+        if let Measure::Shear { tension } = self.measure
+            && !(tension >= 0.0 && tension.is_finite())
+        {
+            return refuse("tension", tension.to_string(), "0 or more, in N/m");
+        }
+        match (&self.extension, self.gauge) {
+            (Extension::Strain(_), _) | (_, Some(_)) => Ok(()),
+            _ => refuse("gauge", "none".into(), "the clamps' distance at rest: lengths are divided by it"),
+        }
+    }
+
+    /// λ − 1, or γ.
+    fn elongation(&self, value: f64) -> f64 {
+        match (&self.extension, self.gauge) {
+            (Extension::Separation(_), Some(gauge)) => (value - gauge) / gauge,
+            (Extension::Displacement(_), Some(gauge)) => value / gauge,
+            _ => value,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn read(text: &str, test: &ForceTable) -> Result<CurveFile> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("pull.csv");
+        fs::write(&path, text).unwrap();
+        read_force_table(&path, test)
+    }
+
+    fn test(extension: Extension, measure: Measure) -> ForceTable {
+        ForceTable { width: 0.05, gauge: Some(0.2), extension, force: "load:N".into(), rows: None, measure }
+    }
+
+    #[test]
+    fn a_table_becomes_stress_over_the_strain_asked_for() {
+        let table = "travel_mm,load\n0,0\n20,10\n40,30\n";
+        let green = test(Extension::Displacement("travel_mm".into()), Measure::Green);
+        let found = read(table, &green).unwrap();
+        let near = |found: &[f64], expected: &[f64]| {
+            found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
+        };
+        assert!(near(&found.strains, &[0.0, 0.105, 0.22]));
+        assert!(near(&found.stresses, &[0.0, 200.0 / 1.1, 600.0 / 1.2]));
+        let engineering =
+            read(table, &ForceTable { measure: Measure::Engineering, ..green.clone() }).unwrap();
+        assert!(
+            near(&engineering.strains, &[0.0, 0.1, 0.2]) && near(&engineering.stresses, &[0.0, 200.0, 600.0])
+        );
+        let shear = ForceTable { measure: Measure::Shear { tension: 100.0 }, ..green.clone() };
+        assert!(near(&read(table, &shear).unwrap().stresses, &[0.0, 190.0, 580.0]));
+        // The clamps' distance, the rest left out.
+        let separation = test(Extension::Separation("apart:m".into()), Measure::Green);
+        let found = read("apart,load\n0.22,10\n0.24,30\n", &separation).unwrap();
+        assert!(near(&found.strains, &[0.0, 0.105, 0.22]) && found.stresses[0] == 0.0);
+        assert_eq!(
+            found.to_csv().lines().next(),
+            Some("green_strain,pk2_stress_n_per_m,engineering_strain,nominal_stress_n_per_m")
+        );
+        // What stands beside is what the clamps and the load cell said.
+        let last =
+            found.to_csv().lines().last().map(|row| row.split(',').map(|f| f.parse().unwrap()).collect());
+        let last: Vec<f64> = last.unwrap();
+        assert!(near(&last[2..], &[0.2, 600.0]), "{last:?}");
+        let strain =
+            ForceTable { gauge: None, ..test(Extension::Strain("e:%".into()), Measure::Engineering) };
+        let some = ForceTable { rows: Some(1..=2), ..strain };
+        assert!(near(&read("e,load\n0,0\n10,10\n5,1\n", &some).unwrap().strains, &[0.0, 0.1]));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_by_its_line() {
+        let green = test(Extension::Displacement("travel_mm".into()), Measure::Green);
+        for (rows, words) in [
+            ("0,0\n20,10\n10,5", ":4 green_strain: found"),
+            ("0,0\n5000,10", ":3 travel_mm: found 26 times the gauge length"),
+            ("0,0\n20,x", ":3 load: found x"),
+            ("0,0\n20,1e308", ":3 load: found 100000"),
+        ] {
+            let error = read(&format!("travel_mm,load\n{rows}\n"), &green).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+        // A column's name may hold anything; the message stays one line.
+        let named = test(Extension::Displacement("a\u{14}b_mm".into()), Measure::Green);
+        let error = read("a\u{14}b_mm,load\n5000,1\n", &named).unwrap_err().to_string();
+        assert!(error.contains(":2 a\\u{14}b_mm: found 26 times"), "{error}");
+        for wrong in [
+            ForceTable { gauge: None, ..green.clone() },
+            ForceTable { width: 50.0, ..green.clone() },
+            ForceTable { measure: Measure::Shear { tension: -1.0 }, ..green.clone() },
+            ForceTable { rows: Some(2..=9), ..green },
+        ] {
+            assert!(read("travel_mm,load\n0,0\n20,10\n", &wrong).is_err(), "{wrong:?}");
+        }
+    }
+}

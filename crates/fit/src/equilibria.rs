@@ -1,0 +1,28 @@
+//! All frames of one stage in equilibrium under trial curves: residuals of clip forces or of positions, and their
+//! sensitivities.
+//!
+//! ```text
+//! equilibrium      g(x, k) = 0 at the free nodes                       g = ∇E
+//! clip force       F_c = Σ g over the clip's nodes
+//! sensitivity      dx/dk = −K⁻¹ ∂g/∂k        dF_c/dk = ∂F_c/∂k + (∂F_c/∂x) dx/dk
+//! ```
+//!
+//! K is the true stiffness matrix at the equilibrium, whose factorisation the equilibrium leaves behind; all control
+//! points are solved for at once. Frames are independent: they run in parallel and are collected in order.
+//!
+//! Source: Miguel et al. 2012, eqs. 7–9; without the μI that they keep in K, unless equilibria are sought by
+//! Levenberg–Marquardt, too (docs/model.md).
+
+mod meter;
+mod residual;
+mod simulation;
+mod solve;
+mod state;
+mod task;
+mod whitening;
+
+pub use meter::{Counters, Meter};
+pub(crate) use residual::without_rounding;
+pub use simulation::{DroppedFrame, Settled, Simulation};
+pub(crate) use solve::parameter_columns;
+pub use task::{Objective, SolveStart, Task};

@@ -1,0 +1,217 @@
+//! What a stage compares: residuals, in units of independent noise, and their derivatives.
+
+use super::simulation::Simulation;
+use super::state::FrameResult;
+use super::task::Objective;
+use crate::optimise::gauss_newton::{Evaluation, Residuals};
+use crate::optimise::robust::Robust;
+use crate::twin::replica::{Replica, ReplicaFrame};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::equilibrium::Status;
+use cloth_sim::material::Component;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+use std::convert::Infallible;
+
+impl Simulation<'_> {
+    /// Indices of residuals that follow one another: one force component of one clip through a sequence, or one coordinate
+    /// of one node.
+    pub fn tracks(&self) -> Vec<Vec<usize>> {
+        let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
+        let mut index = 0;
+        for &(replica, frame) in &self.frames {
+            let frame = &self.replicas[replica].frames[frame];
+            let forces = &frame.forces;
+            match self.task.objective {
+                Objective::Forces => {
+                    for force in forces {
+                        tracks.entry((replica, force.clip, force.number)).or_default().push(index);
+                        index += 1;
+                    }
+                }
+                Objective::Positions => {
+                    for (_, coordinate) in self.replicas[replica].seen_unknowns(frame) {
+                        tracks.entry((replica, coordinate / 3, coordinate % 3)).or_default().push(index);
+                        index += 1;
+                    }
+                }
+            }
+        }
+        tracks.into_values().collect()
+    }
+
+    /// The derivative of everything that is compared with respect to the control values of other curves, in the order of
+    /// their groups; rows and units as those of an evaluation.
+    ///
+    /// * `groups` — components that share a curve, a group each
+    pub fn sensitivity_to(&self, groups: &[Vec<Component>]) -> DMatrix<f64> {
+        let curves = self.curves(&self.curve);
+        let results = self.solve_frames(&curves, groups, None);
+        let columns: usize =
+            groups.iter().map(|group| curves.get(group[0]).map_or(0, StiffnessCurve::len)).sum();
+        let mut values = Vec::new();
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let replica = &self.replicas[replica];
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, columns);
+            values.extend(rows.columns(1, columns).transpose().iter());
+        }
+        DMatrix::from_row_slice(values.len() / columns.max(1), columns, &values)
+    }
+
+    pub(super) fn noise(&self, replica: &Replica) -> Option<f64> {
+        match self.task.objective {
+            Objective::Forces => replica.force_noise,
+            Objective::Positions => replica.position_noise,
+        }
+    }
+
+    /// What the residuals of a replica are divided by.
+    pub(super) fn scale(&self, replica: &Replica) -> f64 {
+        self.noise(replica).filter(|_| self.noise_is_known()).unwrap_or(1.0)
+    }
+
+    /// What each measurement of a frame is divided by.
+    pub(super) fn scales<'s>(
+        &'s self,
+        replica: &'s Replica,
+        frame: &'s ReplicaFrame,
+    ) -> impl Iterator<Item = f64> + 's {
+        let scale = self.scale(replica);
+        let forces = frame.forces.iter().map(|_| 1.0);
+        let positions = replica.seen_unknowns(frame).map(|(_, coordinate)| replica.spread[coordinate / 3]);
+        let by_forces = self.task.objective == Objective::Forces;
+        forces
+            .filter(move |_| by_forces)
+            .chain(positions.filter(move |_| !by_forces))
+            .map(move |share| share * scale)
+    }
+
+    pub(super) fn typical_residual(&self) -> f64 {
+        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
+        let mut sizes: Vec<f64> = Vec::new();
+        // A frame without an equilibrium has no residuals.
+        let balanced =
+            self.frames.iter().zip(&results).filter(|(_, result)| result.status == Status::Converged);
+        for (&(replica, frame), result) in balanced {
+            let replica = &self.replicas[replica];
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, 0);
+            sizes.extend(rows.iter().map(|residual| residual.abs()));
+        }
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).map_or(0.0, |median| 1.4826 * median)
+    }
+
+    /// A frame's residuals, and in further columns their derivatives, all in units of independent noise.
+    fn residual_rows(
+        &self,
+        replica: &Replica,
+        frame: &ReplicaFrame,
+        result: &FrameResult,
+        points: usize,
+    ) -> DMatrix<f64> {
+        let scales: Vec<f64> = self.scales(replica, frame).collect();
+        let mut rows = DMatrix::zeros(scales.len(), points + 1);
+        let measured = measured(replica, frame, self.task.objective);
+        for (i, scale) in scales.iter().enumerate() {
+            rows[(i, 0)] = (measured[i] - result.simulated[i]) / scale;
+            (0..points).for_each(|k| rows[(i, k + 1)] = result.derivatives[i * points + k] / scale);
+        }
+        if let Some(whitening) = &result.state.whitening {
+            whitening.apply(&mut rows);
+        }
+        if let Some(robust) = self.task.robust {
+            for mut row in rows.row_iter_mut() {
+                let (value, slope) = robust.bend(row[0]);
+                row *= slope;
+                row[0] = value;
+            }
+        }
+        rows
+    }
+}
+
+impl Residuals for Simulation<'_> {
+    type Error = Infallible;
+
+    fn robust(&self) -> Option<Robust> {
+        self.task.robust
+    }
+
+    /// Residuals of all measurements, frame by frame, in units of the noise where that is known, else N or m.
+    fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
+        let failed = |reason: String| Ok(Evaluation::Failed { reason });
+        let curve = match self.curve.with_stiffnesses(point.iter().copied().collect()) {
+            Ok(curve) => curve,
+            Err(error) => return failed(error.to_string()),
+        };
+        let change = point - DVector::from_column_slice(self.curve.stiffnesses());
+        let groups = [self.task.fitted.clone()];
+        let results = self.solve_frames(&self.curves(&curve), &groups, Some(&change));
+        if let Some(index) = results.iter().position(|result| result.status != Status::Converged) {
+            let (replica, frame) = self.frames[index];
+            let replica = &self.replicas[replica];
+            return failed(format!(
+                "no equilibrium of {} frame {}: {}",
+                replica.name, replica.frames[frame].index, results[index].status
+            ));
+        }
+        let (mut residual, mut derivatives) = (Vec::new(), Vec::new());
+        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
+            let replica = &self.replicas[replica];
+            let rows = self.residual_rows(replica, &replica.frames[frame], result, point.len());
+            for row in rows.row_iter() {
+                residual.push(row[0]);
+                derivatives.extend(row.iter().skip(1));
+            }
+        }
+        let rows = residual.len();
+        self.states = results.into_iter().map(|result| result.state).collect();
+        self.curve = curve;
+        Ok(Evaluation::Values {
+            residual: DVector::from_vec(residual),
+            jacobian: Some(without_rounding(DMatrix::from_row_slice(rows, point.len(), &derivatives))),
+        })
+    }
+}
+
+/// Columns up to this share of the longest are rounding, and rows up to that.
+const ROUNDING: f64 = 1e-12;
+const UNMOVED: f64 = 1e-9;
+
+/// A Jacobian by control values in which those that no frame sees have columns of zeros. What is left of such a column by
+/// rounding would count as seen, since what is solved scales columns to one length; but control values have one unit, and
+/// what a frame says of them comes through the same equilibrium.
+pub(crate) fn without_rounding(mut jacobian: DMatrix<f64>) -> DMatrix<f64> {
+    let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+    let rounding = jacobian.column_iter_mut().filter(|column| column.norm() <= ROUNDING * longest);
+    rounding.for_each(|mut column| column.fill(0.0));
+    // So are rows: a coordinate along a table's edge, which no bending moves, says nothing of any curve.
+    let longest = jacobian.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
+    let rounding = jacobian.row_iter_mut().filter(|row| row.norm() <= UNMOVED * longest);
+    rounding.for_each(|mut row| row.fill(0.0));
+    jacobian
+}
+
+/// What was measured of what is compared.
+fn measured(replica: &Replica, frame: &ReplicaFrame, objective: Objective) -> Vec<f64> {
+    match (objective, &frame.observed) {
+        (Objective::Forces, _) => frame.forces.iter().map(|component| component.force).collect(),
+        (Objective::Positions, Some(observed)) => {
+            replica.seen_unknowns(frame).map(|(_, coordinate)| observed[coordinate]).collect()
+        }
+        (Objective::Positions, None) => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_of_a_column_by_rounding_is_nothing() {
+        let jacobian = DMatrix::from_row_slice(2, 3, &[1.0, 1e-16, 1e-9, 2.0, -2e-16, 0.0]);
+        let expected = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, 1e-9, 2.0, 0.0, 0.0]);
+        assert_eq!(without_rounding(jacobian), expected);
+        assert_eq!(without_rounding(DMatrix::zeros(0, 2)), DMatrix::zeros(0, 2));
+    }
+}

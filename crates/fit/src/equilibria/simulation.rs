@@ -1,0 +1,249 @@
+//! The frames of one stage under an unknown curve.
+
+use super::meter::Meter;
+use super::state::{State, start_state};
+use super::task::Task;
+use crate::optimise::robust::Robust;
+use crate::twin::replica::{Replica, ReplicaFrame};
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::equilibrium::{Solver, Status};
+use cloth_sim::material::{Component, Curves};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+/// A frame that takes no part because its equilibrium was not found.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DroppedFrame {
+    /// Name of the sequence.
+    pub sequence: String,
+    /// Index of the frame in it.
+    pub frame: usize,
+    /// How the solve ended.
+    pub status: Status,
+}
+
+/// One frame of a simulation, for those who read it.
+#[derive(Debug, Clone, Copy)]
+pub struct Settled<'s> {
+    /// The sequence's replica.
+    pub replica: &'s Replica,
+    /// The frame.
+    pub frame: &'s ReplicaFrame,
+    /// Its equilibrium, 3 stacked coordinates a node, m.
+    pub x: &'s [f64],
+    /// An unstable equilibrium was met and left on the way: the frame may have several.
+    pub multi_stable: bool,
+}
+
+/// A gap so many times as wide as the widest between frames is no longer bridged: frames are rarely spaced evenly.
+const BRIDGED: f64 = 2.0;
+
+pub(super) type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
+
+/// A stage's replicas under one unknown curve.
+pub struct Simulation<'a> {
+    pub(super) replicas: &'a [Replica],
+    /// Per replica, per cloth.
+    pub(super) solvers: Vec<Vec<SolverPool<'a>>>,
+    pub(super) task: Task,
+    pub(super) curve: StiffnessCurve,
+    /// (replica, frame) of every frame in use.
+    pub(super) frames: Vec<(usize, usize)>,
+    pub(super) states: Vec<State>,
+    pub(super) dropped: Vec<DroppedFrame>,
+    pub(super) meter: Arc<Meter>,
+}
+
+impl<'a> Simulation<'a> {
+    /// Finds the first equilibria, and drops the frames that have none.
+    ///
+    /// * `curve` — the curve to start from; its strains are the control points that are fitted
+    pub fn new(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
+        let mut simulation = Self::unsettled(replicas, task, curve, meter);
+        simulation.settle();
+        simulation
+    }
+
+    /// All frames where they would start, none in equilibrium yet.
+    pub fn unsettled(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
+        let frames: Vec<(usize, usize)> = replicas
+            .iter()
+            .enumerate()
+            .flat_map(|(replica, r)| (0..r.frames.len()).map(move |frame| (replica, frame)))
+            .collect();
+        let pools = |replica: &Replica| replica.cloths.iter().map(|_| Mutex::default()).collect();
+        let mut simulation = Self {
+            replicas,
+            solvers: replicas.iter().map(pools).collect(),
+            task,
+            curve,
+            states: Vec::new(),
+            frames,
+            dropped: Vec::new(),
+            meter,
+        };
+        let curves = simulation.curves(&simulation.curve);
+        simulation.states = simulation
+            .frames
+            .par_iter()
+            .map(|&(replica, frame)| {
+                start_state(&replicas[replica], &replicas[replica].frames[frame], &curves)
+            })
+            .collect();
+        simulation
+    }
+
+    /// Lets residuals above so many times the noise count less; where the noise is not known, above so many times the
+    /// typical residual under the curve as it is (its median, as a standard deviation).
+    pub fn make_robust(&mut self, limit: f64) {
+        self.task.robust = None;
+        let unit = if self.noise_is_known() { 1.0 } else { self.typical_residual() };
+        self.task.robust = (unit > 0.0).then_some(Robust { limit: limit * unit });
+    }
+
+    /// Goes on with other control points; states stay.
+    pub fn set_curve(&mut self, curve: StiffnessCurve) {
+        self.curve = curve;
+        // Sensitivities belong to the old control values.
+        self.states.iter_mut().for_each(|state| state.sensitivity.clear());
+        self.states.iter_mut().for_each(|state| state.whitening = None);
+    }
+
+    /// True if errors of what is held enter the residuals.
+    pub fn is_whitened(&self) -> bool {
+        self.states.iter().any(|state| state.whitening.is_some())
+    }
+
+    /// The curve of the last evaluation.
+    pub fn curve(&self) -> &StiffnessCurve {
+        &self.curve
+    }
+
+    /// Number of measurements that are compared, over all frames in use.
+    pub fn measurements(&self) -> usize {
+        self.settled().map(|s| self.scales(s.replica, s.frame).count()).sum()
+    }
+
+    /// True if the noise of every sequence is known: residuals then are in units of it.
+    pub fn noise_is_known(&self) -> bool {
+        self.replicas.iter().all(|replica| self.noise(replica).is_some())
+    }
+
+    /// What turns residuals into newtons or metres: the noise they are in units of (the mean, if sequences differ), or 1.
+    pub fn unit(&self) -> f64 {
+        let scales = self.replicas.iter().map(|replica| self.scale(replica));
+        scales.sum::<f64>() / self.replicas.len() as f64
+    }
+
+    /// What is simulated, and how.
+    pub fn task(&self) -> &Task {
+        &self.task
+    }
+
+    /// Frames without an equilibrium.
+    pub fn dropped(&self) -> &[DroppedFrame] {
+        &self.dropped
+    }
+
+    /// The frames in use, with their replicas and states.
+    pub fn settled(&self) -> impl Iterator<Item = Settled<'_>> {
+        let replicas = self.replicas;
+        self.frames.iter().zip(&self.states).map(move |(&(replica, frame), state)| Settled {
+            replica: &replicas[replica],
+            frame: &replicas[replica].frames[frame],
+            x: &state.x,
+            multi_stable: state.escaped,
+        })
+    }
+
+    /// Brings all frames to equilibrium under the curve, and returns the simulated forces along the measured components of
+    /// each, N. Frames that have none are dropped.
+    pub fn settle(&mut self) -> Vec<Vec<f64>> {
+        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
+        let mut forces = Vec::new();
+        self.states.clear();
+        for ((replica, frame), result) in std::mem::take(&mut self.frames).into_iter().zip(results) {
+            if result.status == Status::Converged {
+                self.frames.push((replica, frame));
+                self.states.push(result.state);
+                forces.push(result.forces);
+            } else {
+                let Replica { name, frames, .. } = &self.replicas[replica];
+                let (sequence, frame) = (name.clone(), frames[frame].index);
+                self.dropped.push(DroppedFrame { sequence, frame, status: result.status });
+            }
+        }
+        forces
+    }
+
+    /// The range of the fitted components' strains over all states, from the 1st to the 99th percentile; of their size where
+    /// the curve is odd, so that either way tells of it alike.
+    ///
+    /// It starts at rest, where stress is known without a measurement, if the gap from there is about as wide as those
+    /// between frames.
+    pub fn visited(&self) -> [f64; 2] {
+        let mut strains: Vec<f64> = self.strains().into_iter().map(|[strain, _]| strain).collect();
+        strains.sort_by(f64::total_cmp);
+        let percentile = |share: f64| {
+            let place = share * strains.len().saturating_sub(1) as f64;
+            strains.get(place.round() as usize).copied().unwrap_or(0.0)
+        };
+        let [low, high] = [percentile(0.01), percentile(0.99)];
+        [if low > BRIDGED * self.widest_gap() { low } else { low.min(0.0) }, high.max(0.0)]
+    }
+
+    /// The widest gap between the mean strains of frames that follow one another in strain.
+    fn widest_gap(&self) -> f64 {
+        let of_frame = |s: Settled<'_>| {
+            let strains: Vec<f64> = self.sized_strains(&s).map(|[strain, _]| strain).collect();
+            strains.iter().sum::<f64>() / strains.len().max(1) as f64
+        };
+        let mut means: Vec<f64> = self.settled().map(of_frame).collect();
+        means.sort_by(f64::total_cmp);
+        means.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+    }
+
+    /// The fitted components' strains over all states, each with the area, m², that it stands for; where the curve is odd,
+    /// their sizes.
+    pub fn strains(&self) -> Vec<[f64; 2]> {
+        self.settled().flat_map(|s| self.sized_strains(&s).collect::<Vec<_>>()).collect()
+    }
+
+    fn sized_strains(&self, settled: &Settled<'_>) -> impl Iterator<Item = [f64; 2]> {
+        let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
+        let sized = move |[strain, area]: [f64; 2]| [if odd { strain.abs() } else { strain }, area];
+        let Settled { replica, frame, x, .. } = *settled;
+        self.task.fitted.iter().flat_map(move |&c| replica.cloth(frame).strains(c, x)).map(sized)
+    }
+
+    /// The largest strain that control points should reach.
+    pub fn reach(&self) -> f64 {
+        self.visited()[1].max(f64::MIN_POSITIVE)
+    }
+
+    /// Vertices that were seen too far off a table's lines, over all frames.
+    pub fn vertices_left_out(&self) -> usize {
+        self.replicas.iter().map(|replica| replica.vertices_left_out).sum()
+    }
+
+    /// Of every component, the share of the sheet over all states that is strained beyond its curve's last control point;
+    /// those of which none is are left out.
+    pub fn extrapolated(&self) -> BTreeMap<Component, f64> {
+        let curves = self.curves(&self.curve);
+        let share = |component| {
+            let (sum, frames) = self.settled().fold((0.0, 0), |(sum, frames), s| {
+                (sum + s.replica.cloth(s.frame).extrapolated(&curves, component, s.x), frames + 1)
+            });
+            (component, sum / f64::from(frames.max(1)))
+        };
+        curves.components().map(share).filter(|(_, share)| *share > 0.0).collect()
+    }
+
+    pub(super) fn curves(&self, curve: &StiffnessCurve) -> Curves {
+        let mut curves = self.task.known.clone();
+        self.task.fitted.iter().for_each(|&component| curves.set(component, curve.clone()));
+        curves
+    }
+}

@@ -1,0 +1,250 @@
+//! One frame in equilibrium: where its solve starts, how it falls back, and what the solution's factor tells.
+
+use super::simulation::{Simulation, SolverPool};
+use super::state::{FrameResult, State, measured_shape};
+use super::task::{Objective, SolveStart};
+use super::whitening::Whitening;
+use crate::twin::replica::{Replica, ReplicaFrame};
+use cloth_sim::cloth::Cloth;
+use cloth_sim::curve::StiffnessCurve;
+use cloth_sim::equilibrium::Solver;
+use cloth_sim::material::{Component, Curves};
+use nalgebra::{DVector, Vector3};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Two equilibria of a frame are one if no node is farther apart than this share of a cell.
+const SAME_SHAPE: f64 = 0.01;
+
+impl<'a> Simulation<'a> {
+    /// Equilibria of all frames; `change` of the control values since the states were found moves them ahead.
+    ///
+    /// * `groups` — derivatives are taken with respect to their curves
+    pub(super) fn solve_frames(
+        &self,
+        curves: &Curves,
+        groups: &[Vec<Component>],
+        change: Option<&DVector<f64>>,
+    ) -> Vec<FrameResult> {
+        self.frames
+            .par_iter()
+            .zip(&self.states)
+            .map(|(&(replica, frame), state)| {
+                let pool = &self.solvers[replica][self.replicas[replica].frames[frame].cloth];
+                let replica = &self.replicas[replica];
+                self.solve_frame(pool, replica, &replica.frames[frame], state, curves, groups, change)
+            })
+            .collect()
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one frame of solve_frames")]
+    fn solve_frame(
+        &self,
+        pool: &SolverPool<'a>,
+        replica: &'a Replica,
+        frame: &'a ReplicaFrame,
+        state: &State,
+        curves: &Curves,
+        groups: &[Vec<Component>],
+        change: Option<&DVector<f64>>,
+    ) -> FrameResult {
+        let cloth = replica.cloth(frame);
+        // A poisoned pool only means that another frame panicked; its solvers hold no state that matters.
+        let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
+        let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
+        let mut x = match self.task.start {
+            SolveStart::LastEquilibrium => predicted(state, cloth, change),
+            SolveStart::Measured => measured_shape(replica, frame),
+        };
+        let falls_back = self.task.start == SolveStart::LastEquilibrium;
+        let settings = &self.task.settings;
+        let mut found = solver.solve(curves, &mut x, settings);
+        self.meter.add(&found);
+        let mut escaped = found.escaped;
+        // In the plane a triangle cannot turn over without passing through itself: such a balance is that of a crumpled start.
+        let rest = replica.rest();
+        let crumpled = |x: &[f64]| cloth.turns_over(&rest, x);
+        if (!found.converged() || crumpled(&x)) && falls_back {
+            // A measured shape or a prediction that was too far off: from the replica's own start instead.
+            self.meter.begins_anew();
+            x.copy_from_slice(&frame.start);
+            found = solver.solve(curves, &mut x, settings);
+            self.meter.add(&found);
+            escaped = found.escaped;
+        }
+        if (!found.converged() || crumpled(&x)) && falls_back && !replica.is_on_table() {
+            // In load steps, from the flat sheet.
+            self.meter.takes_load_steps();
+            x.copy_from_slice(&rest);
+            found = solver.drive(curves, &mut x, &frame.start, settings);
+            self.meter.add(&found);
+            escaped = found.escaped;
+        }
+        let escaped = escaped || crumpled(&x);
+        let mut result = FrameResult {
+            state: State {
+                x,
+                sensitivity: Vec::new(),
+                escaped: state.escaped || escaped,
+                whitening: state.whitening.clone(),
+            },
+            status: found.status,
+            forces: Vec::new(),
+            simulated: Vec::new(),
+            derivatives: Vec::new(),
+        };
+        // What is no equilibrium has no sensitivities.
+        if found.converged() {
+            self.differentiate(&mut solver, replica, frame, curves, groups, &mut result);
+        }
+        pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(solver);
+        result
+    }
+
+    /// Simulated values, their derivatives with respect to the groups' curves, and dx/dk.
+    fn differentiate(
+        &self,
+        solver: &mut Solver<'_>,
+        replica: &Replica,
+        frame: &ReplicaFrame,
+        curves: &Curves,
+        groups: &[Vec<Component>],
+        result: &mut FrameResult,
+    ) {
+        let cloth = replica.cloth(frame);
+        let x = &result.state.x;
+        let clip_forces = solver.clip_forces();
+        result.forces = frame.forces.iter().map(|component| component.of(&clip_forces)).collect();
+        let columns = parameter_columns(cloth, curves, groups, x);
+        let unknowns = cloth.unknowns();
+        let mut sensitivity = vec![0.0; columns.len() * unknowns];
+        for (column, slopes) in columns.iter().zip(sensitivity.chunks_exact_mut(unknowns.max(1))) {
+            cloth.collect(column, slopes);
+            slopes.iter_mut().for_each(|force| *force = -*force);
+        }
+        solver.solve_linear(&mut sensitivity);
+        match self.task.objective {
+            Objective::Forces => {
+                result.simulated = result.forces.clone();
+                result.derivatives = force_derivatives(solver, cloth, frame, &columns, &sensitivity);
+            }
+            Objective::Positions => {
+                result.simulated = replica.seen_unknowns(frame).map(|(_, c)| x[c]).collect();
+                let seen = replica.seen_unknowns(frame).map(|(unknown, _)| unknown);
+                let row = |unknown| (0..columns.len()).map(move |k| k * unknowns + unknown);
+                result.derivatives = seen.flat_map(row).map(|place| sensitivity[place]).collect();
+                if result.state.whitening.is_none() && replica.held_spread > 0.0 {
+                    result.state.whitening = Some(Arc::new(Whitening::of_table(solver, replica, frame)));
+                }
+            }
+        }
+        result.state.sensitivity = sensitivity;
+    }
+
+    /// Follows every sheet between clips that moves in space from its rest through its frames, each from the equilibrium
+    /// before. A frame that so comes to another shape than from its measured one has several equilibria, and is flagged;
+    /// one that cannot be followed starts from its measured shape.
+    pub fn follow(&mut self) {
+        let curves = self.curves(&self.curve);
+        let followed: Vec<Vec<(usize, State)>> =
+            (0..self.replicas.len()).into_par_iter().map(|replica| self.followed(replica, &curves)).collect();
+        for (place, state) in followed.into_iter().flatten() {
+            self.states[place] = state;
+        }
+    }
+
+    /// The states of one replica's frames by continuation, with their places among all frames.
+    fn followed(&self, index: usize, curves: &Curves) -> Vec<(usize, State)> {
+        let replica = &self.replicas[index];
+        if replica.planar || replica.is_on_table() {
+            return Vec::new();
+        }
+        let mut solver = Solver::new(&replica.cloths[0]);
+        let mut x = replica.rest();
+        let mut states = Vec::new();
+        for (place, &(_, frame)) in self.frames.iter().enumerate().filter(|(_, (of, _))| *of == index) {
+            let settings = &self.task.settings;
+            let mut measured = self.states[place].clone();
+            let seen = solver.solve(curves, &mut measured.x, settings);
+            measured.escaped |= seen.escaped;
+            let along = solver.drive(curves, &mut x, &replica.frames[frame].start, settings);
+            [seen, along].iter().for_each(|found| self.meter.add(found));
+            if !along.converged() {
+                self.meter.does_not_follow();
+                x.copy_from_slice(&measured.x);
+                states.push((place, measured));
+                continue;
+            }
+            let apart = x.iter().zip(&measured.x).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            let [dx, dy] = replica.specimen.grid.cell();
+            let other = seen.converged() && apart > SAME_SHAPE * dx.min(dy);
+            let escaped = measured.escaped || along.escaped || other;
+            states.push((place, State { x: x.clone(), escaped, ..State::default() }));
+        }
+        states
+    }
+}
+
+/// A state, moved ahead by a change of the control values.
+fn predicted(state: &State, cloth: &Cloth, change: Option<&DVector<f64>>) -> Vec<f64> {
+    let mut x = state.x.clone();
+    let unknowns = cloth.unknowns();
+    if let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * unknowns) {
+        for (column, step) in state.sensitivity.chunks_exact(unknowns.max(1)).zip(change.iter()) {
+            for &(coordinate, unknown) in cloth.free_coordinates() {
+                x[coordinate] += column[unknown] * step;
+            }
+        }
+    }
+    x
+}
+
+/// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 a node.
+pub(crate) fn parameter_columns(
+    cloth: &Cloth,
+    curves: &Curves,
+    groups: &[Vec<Component>],
+    x: &[f64],
+) -> Vec<Vec<f64>> {
+    let mut columns = Vec::new();
+    let mut part = Vec::new();
+    for group in groups {
+        let first = columns.len();
+        let points =
+            group.first().and_then(|&component| curves.get(component)).map_or(0, StiffnessCurve::len);
+        columns.resize(first + points, vec![0.0; x.len()]);
+        for &component in group {
+            cloth.parameter_gradient(curves, component, x, &mut part);
+            for (sum, column) in columns[first..].iter_mut().zip(part.chunks_exact(x.len())) {
+                sum.iter_mut().zip(column).for_each(|(sum, value)| *sum += value);
+            }
+        }
+    }
+    columns
+}
+
+/// Derivatives of the measured force components, component by component: direct, and through the shape.
+fn force_derivatives(
+    solver: &Solver<'_>,
+    cloth: &Cloth,
+    frame: &ReplicaFrame,
+    columns: &[Vec<f64>],
+    sensitivity: &[f64],
+) -> Vec<f64> {
+    let unknowns = cloth.unknowns();
+    let border = solver.border();
+    let slopes: Vec<Vec<Vector3<f64>>> = columns
+        .iter()
+        .zip(sensitivity.chunks_exact(unknowns.max(1)))
+        .map(|(column, dx)| {
+            let through_shape = |row: usize| -> f64 {
+                border[row * unknowns..(row + 1) * unknowns].iter().zip(dx).map(|(a, b)| a * b).sum()
+            };
+            let direct = cloth.clip_forces(column).into_iter().enumerate();
+            direct
+                .map(|(group, direct)| direct + Vector3::from_fn(|i, _| through_shape(3 * group + i)))
+                .collect()
+        })
+        .collect();
+    frame.forces.iter().flat_map(|component| slopes.iter().map(|groups| component.of(groups))).collect()
+}

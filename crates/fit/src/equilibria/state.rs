@@ -1,0 +1,60 @@
+//! The equilibrium of one frame, and where its first solve starts.
+
+use super::whitening::Whitening;
+use crate::twin::replica::{Replica, ReplicaFrame};
+use cloth_sim::equilibrium::Status;
+use cloth_sim::material::Curves;
+use std::sync::Arc;
+
+/// The equilibrium of one frame at some control values.
+#[derive(Debug, Clone, Default)]
+pub(super) struct State {
+    pub(super) x: Vec<f64>,
+    /// dx/dk: one column of unknowns a control value; empty before the first solve.
+    pub(super) sensitivity: Vec<f64>,
+    /// An unstable equilibrium was met and left: others may exist.
+    pub(super) escaped: bool,
+    /// How errors of what is held enter; taken anew by [`Simulation::set_curve`] and else kept, so that what is minimised
+    /// is one function.
+    pub(super) whitening: Option<Arc<Whitening>>,
+}
+
+/// A frame's share of an evaluation.
+pub(super) struct FrameResult {
+    pub(super) state: State,
+    pub(super) status: Status,
+    /// Simulated force along each measured component, N.
+    pub(super) forces: Vec<f64>,
+    /// What is compared, as simulated.
+    pub(super) simulated: Vec<f64>,
+    /// Its derivatives, row by row.
+    pub(super) derivatives: Vec<f64>,
+}
+
+/// The replica's own start, with every free node that was seen where it was seen. Off a table that start is made of what was
+/// seen already.
+pub(super) fn measured_shape(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
+    let mut x = frame.start.clone();
+    for observed in frame.observed.iter().filter(|_| !replica.is_on_table()) {
+        replica.seen_unknowns(frame).for_each(|(_, coordinate)| x[coordinate] = observed[coordinate]);
+    }
+    x
+}
+
+/// Where the first solve starts: at the measured shape where that leaves the plane, else at the replica's own start or,
+/// where it is nearer to balance, at the measured shape.
+pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
+    let cloth = replica.cloth(frame);
+    let own = frame.start.clone();
+    if frame.observed.is_none() || replica.is_on_table() {
+        return State { x: own, ..State::default() };
+    }
+    let measured = measured_shape(replica, frame);
+    let imbalance = |x: &[f64]| {
+        let mut gradient = vec![0.0; x.len()];
+        cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));
+        cloth.free_coordinates().iter().map(|&(c, _)| gradient[c] * gradient[c]).sum::<f64>()
+    };
+    let x = if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) { measured } else { own };
+    State { x, ..State::default() }
+}

@@ -1,0 +1,155 @@
+//! How known curves meet tests, whatever they were fitted to.
+
+use crate::equilibria::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task};
+use crate::stage::interventions::Interventions;
+use crate::stage::report::SequenceReport;
+use crate::stage::sequence_reports;
+use crate::stage::{Settings, Watch, softest_bending, unyielding};
+use crate::twin::replica::{Parts, Replica};
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::{Kind, MeasurementSet, Sequence};
+use cloth_data::inspection::inspect;
+use cloth_data::notice::Notice;
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::material::{Component, Curves};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How known curves meet tests.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// How each sequence was met.
+    pub sequences: Vec<SequenceReport>,
+    /// Components that are not known: a constant stiffness was assumed.
+    pub assumed: Vec<Component>,
+    /// Frames without an equilibrium, which take no part.
+    pub dropped: Vec<DroppedFrame>,
+    /// Contradictions within the measurements; a sequence that was refused takes no part.
+    pub notices: Vec<Notice>,
+    /// What the solves have cost.
+    pub counters: Counters,
+    /// What helped them along.
+    pub interventions: Interventions,
+}
+
+/// Simulates all sequences of some kinds with known curves: how well they are predicted.
+///
+/// * `assumed` — stiffnesses that the fit of the curves has assumed of what it did not know: they are taken again
+///
+/// Sheets between clips that leave their plane are followed from rest through all frames, as a simulator would meet them.
+///
+/// # Errors
+/// Bad settings; sequences that no replica can be made of; none that was not refused.
+pub fn predict(
+    set: &MeasurementSet,
+    kinds: &[Kind],
+    curves: &Curves,
+    assumed: &BTreeMap<Component, f64>,
+    settings: &Settings,
+    watch: &Watch<'_>,
+) -> Result<Prediction> {
+    settings.validate()?;
+    let spent_before = watch.meter.read();
+    let wanted = |sequence: &&Sequence| kinds.contains(&sequence.kind);
+    let alone = set.sequences.iter().filter(wanted).cloned().collect();
+    let inspection = inspect(&MeasurementSet { fabric: set.fabric.clone(), sequences: alone });
+    let sequences = inspection.set.sequences.iter();
+    let sequences: Vec<(&Sequence, Parts)> =
+        sequences.map(|sequence| (sequence, parts(sequence.kind, set, curves, assumed, settings))).collect();
+    if sequences.is_empty() {
+        inspection.check_refusals(kinds)?;
+    }
+    let replicas: Vec<Replica> =
+        sequences.iter().map(|(sequence, parts)| Replica::new(sequence, parts)).collect::<Result<_>>()?;
+    let takes_part =
+        |component: &Component| sequences.iter().any(|(_, parts)| parts.components.contains(component));
+    let unknown = Component::ALL.into_iter().filter(|&component| curves.get(component).is_none());
+    let unknown: Vec<Component> = unknown.filter(takes_part).collect();
+    let task = Task {
+        fitted: Vec::new(),
+        objective: Objective::Forces,
+        known: completed(curves, &unknown, assumed, &replicas, settings)?,
+        settings: settings.equilibrium,
+        start: SolveStart::LastEquilibrium,
+        robust: None,
+    };
+    let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
+    let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(&watch.meter));
+    simulation.follow();
+    let forces = simulation.settle();
+    let counters = watch.meter.read().since(&spent_before);
+    Ok(Prediction {
+        interventions: Interventions::new(&counters, &simulation),
+        sequences: sequence_reports(&simulation, &forces),
+        assumed: unknown,
+        dropped: simulation.dropped().to_vec(),
+        notices: inspection.notices.clone(),
+        counters,
+    })
+}
+
+/// What is known, and what is assumed beside it: as the fit did. Where that is not said, for one of weft and warp the
+/// other's mean stiffness, which across a strip hardly matters; for both, and for the shear of a sheet off a table, a membrane
+/// that hardly gives; for a bending curve the softest of the others, without which the sheet would crumple along its lines.
+fn completed(
+    curves: &Curves,
+    unknown: &[Component],
+    assumed: &BTreeMap<Component, f64>,
+    replicas: &[Replica],
+    settings: &Settings,
+) -> Result<Curves> {
+    let mean = |component: Component| {
+        let curve = curves.get(component)?;
+        Some(curve.stiffnesses().iter().sum::<f64>() / curve.len() as f64)
+    };
+    let stretch = mean(Component::StretchWeft).or(mean(Component::StretchWarp));
+    let shear = mean(Component::Shear).unwrap_or(0.0);
+    let mut completed = curves.clone();
+    for &component in unknown {
+        let other = match component {
+            _ if component.is_bending() => softest_bending(curves),
+            _ if component.is_stretch() => stretch,
+            _ => None,
+        };
+        let stiffness = assumed.get(&component).copied().or(other);
+        let stiffness = stiffness.unwrap_or_else(|| unyielding(replicas, component, shear));
+        let negative = settings.model.negative_strain(component, settings.compression);
+        completed.set(component, StiffnessCurve::constant(stiffness, negative).map_err(mechanics)?);
+    }
+    Ok(completed)
+}
+
+fn mechanics(source: cloth_sim::error::Error) -> Error {
+    Error::Mechanics { context: "prediction".into(), source }
+}
+
+/// What a test's replica consists of: in strips pulled along their yarns shear and bending play no part. Without any
+/// bending, known or assumed, a sheet between clips stays in its plane: in space it would crumple. Only a sheet off a table
+/// has shear that is not known.
+fn parts(
+    kind: Kind,
+    set: &MeasurementSet,
+    curves: &Curves,
+    assumed: &BTreeMap<Component, f64>,
+    settings: &Settings,
+) -> Parts {
+    let stretches = matches!(kind, Kind::StretchWeft | Kind::StretchWarp);
+    let bends = curves.components().chain(assumed.keys().copied()).any(Component::is_bending);
+    let off_table = matches!(kind, Kind::BendWeft | Kind::BendWarp | Kind::BendBias);
+    let takes_part = |component: Component| match component {
+        _ if component.is_stretch() => true,
+        _ if stretches => false,
+        Component::Shear => off_table && bends || curves.get(component).is_some(),
+        _ => bends,
+    };
+    Parts {
+        model: settings.model,
+        flat: kind == Kind::StretchBias || !stretches && !bends,
+        components: Component::ALL.into_iter().filter(|&component| takes_part(component)).collect(),
+        areal_density: set.fabric.areal_density_kg_m2,
+        nodes: settings.nodes,
+        diagonals: settings.diagonals,
+        table: settings.table,
+    }
+}

@@ -1,0 +1,203 @@
+//! Curves on motions and samples that the fit has not seen.
+//!
+//! Where a sheet buckles, its equilibria are discontinuous, and the distance between two shapes says little: what is
+//! compared there are measures of the whole (Miguel et al. 2012, §6, figure 7).
+
+use crate::judge::prediction::{Prediction, predict};
+use crate::stage::report::{ForceRow, SequenceReport};
+use crate::stage::{Settings, Watch};
+use crate::twin::in_place;
+use cloth_data::error::Result;
+use cloth_data::frame::{Kind, MeasurementSet, Sequence};
+use cloth_data::measure::{Pull, aggregated_torque, clip_centres, pulls, stretching_force_difference};
+use cloth_data::rectangle::rest_normal;
+use cloth_sim::material::{Component, Curves};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+/// A measure of a whole frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// Torque of the clips' forces about the cloth's centre, N·m: tests of shear.
+    AggregatedTorque,
+    /// Difference of the two corner-to-corner forces, N: the corner pull.
+    StretchingForceDifference,
+}
+
+impl Measure {
+    /// The measure of a kind of test; `None` where forces and shapes are compared one by one.
+    pub fn of(kind: Kind) -> Option<Self> {
+        match kind {
+            Kind::Shear | Kind::ComplexShear => Some(Self::AggregatedTorque),
+            Kind::CornerPull => Some(Self::StretchingForceDifference),
+            _ => None,
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::AggregatedTorque => "N m",
+            Self::StretchingForceDifference => "N",
+        }
+    }
+}
+
+impl std::fmt::Display for Measure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::AggregatedTorque => "aggregated torque",
+            Self::StretchingForceDifference => "stretching-force difference",
+        })
+    }
+}
+
+/// A measure in one frame.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct MeasureRow {
+    /// Index of the frame in its sequence.
+    pub frame: usize,
+    /// How far the test went: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
+    pub extension: f64,
+    /// Measured.
+    pub measured: f64,
+    /// Simulated.
+    pub simulated: f64,
+    /// The frame has several equilibria.
+    pub multi_stable: bool,
+}
+
+/// How a sequence was met.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validated {
+    /// Forces and shapes.
+    pub report: SequenceReport,
+    /// The measure of the whole, where the kind of test has one, and its rows.
+    pub measure: Option<(Measure, Vec<MeasureRow>)>,
+}
+
+impl Validated {
+    /// Root mean square difference of the measure, in its unit.
+    pub fn measure_rms(&self) -> Option<f64> {
+        let (_, rows) = self.measure.as_ref()?;
+        let square: f64 = rows.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
+        Some((square / rows.len() as f64).sqrt())
+    }
+
+    /// The same as a share of the range that was measured.
+    pub fn measure_share(&self) -> Option<f64> {
+        let (_, rows) = self.measure.as_ref()?;
+        let [low, high] = rows
+            .iter()
+            .fold([f64::MAX, f64::MIN], |[low, high], row| [low.min(row.measured), high.max(row.measured)]);
+        Some(self.measure_rms()? / (high - low)).filter(|_| high > low)
+    }
+}
+
+/// How known curves meet a set.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validation {
+    /// Every sequence of the kinds asked for that has a frame with an equilibrium.
+    pub sequences: Vec<Validated>,
+    /// Frames without an equilibrium and what it all cost.
+    pub prediction: Prediction,
+}
+
+impl Validation {
+    /// Frames of a sequence that take no part: at rest, or without an equilibrium.
+    pub fn left_out(&self, sequence: &SequenceReport) -> usize {
+        sequence.left_out(&self.prediction.dropped)
+    }
+
+    /// Names of the sequences of which no frame has an equilibrium, with the number of their frames.
+    pub fn lost(&self) -> Vec<(&str, usize)> {
+        let mut lost: Vec<&str> = self.prediction.dropped.iter().map(|frame| &frame.sequence[..]).collect();
+        lost.dedup();
+        lost.retain(|name| self.sequences.iter().all(|sequence| sequence.report.name != *name));
+        lost.into_iter().map(|name| (name, self.without_equilibrium(name))).collect()
+    }
+
+    fn without_equilibrium(&self, name: &str) -> usize {
+        self.prediction.dropped.iter().filter(|frame| frame.sequence == name).count()
+    }
+}
+
+/// Predicts sequences of a set, and measures them as wholes.
+///
+/// * `kinds` — which tests; all others are left out
+/// * `assumed` — as in [`predict`]
+///
+/// # Errors
+/// As [`predict`].
+pub fn validate(
+    set: &MeasurementSet,
+    kinds: &[Kind],
+    curves: &Curves,
+    assumed: &BTreeMap<Component, f64>,
+    settings: &Settings,
+    watch: &Watch<'_>,
+) -> Result<Validation> {
+    let prediction = predict(set, kinds, curves, assumed, settings, watch)?;
+    let validated = |report: &SequenceReport| {
+        let sequence = set.sequences.iter().find(|sequence| sequence.name == report.name);
+        let measure = Measure::of(report.kind).zip(sequence);
+        let rows = measure.map(|(measure, sequence)| (measure, measure_rows(measure, sequence, report)));
+        Validated { report: report.clone(), measure: rows.filter(|(_, rows)| !rows.is_empty()) }
+    };
+    Ok(Validation { sequences: prediction.sequences.iter().map(validated).collect(), prediction })
+}
+
+/// The measure in every frame in which all clips' forces are known.
+fn measure_rows(measure: Measure, sequence: &Sequence, report: &SequenceReport) -> Vec<MeasureRow> {
+    let mut frames: Vec<usize> = report.forces.iter().map(|row| row.frame).collect();
+    frames.dedup();
+    let row = |frame: usize| {
+        let rows: Vec<&ForceRow> = report.forces.iter().filter(|row| row.frame == frame).collect();
+        let of = |value: &dyn Fn(&ForceRow) -> f64| measured_whole(measure, sequence, frame, &rows, value);
+        Some(MeasureRow {
+            frame,
+            extension: rows.first()?.extension,
+            measured: of(&|row| row.measured)?,
+            simulated: of(&|row| row.simulated)?,
+            multi_stable: report.multi_stable.contains(&frame),
+        })
+    };
+    frames.into_iter().filter_map(row).collect()
+}
+
+/// The measure of one frame from its force components, measured or simulated, in the world's axes.
+fn measured_whole(
+    measure: Measure,
+    sequence: &Sequence,
+    frame: usize,
+    rows: &[&ForceRow],
+    value: &dyn Fn(&ForceRow) -> f64,
+) -> Option<f64> {
+    let seen = &sequence.frames[frame];
+    let centres = clip_centres(sequence, seen);
+    let cords = pulls(sequence, seen);
+    let points = centres.iter().enumerate().map(|(clip, centre)| {
+        let own: Vec<Vector3<f64>> = cords.iter().filter(|p| p.clip == clip).map(|p| p.point).collect();
+        if own.is_empty() { *centre } else { own.iter().sum::<Vector3<f64>>() / own.len() as f64 }
+    });
+    let forces: Vec<Pull> = points
+        .enumerate()
+        .map(|(clip, point)| {
+            let components = rows.iter().filter(|row| row.clip == clip);
+            Pull { clip, point, force: components.map(|row| row.world * value(row)).sum() }
+        })
+        .collect();
+    if (0..centres.len()).any(|clip| !rows.iter().any(|row| row.clip == clip)) {
+        return None;
+    }
+    let centre = centres.iter().sum::<Vector3<f64>>() / centres.len() as f64;
+    match measure {
+        Measure::AggregatedTorque => {
+            let normal = rest_normal(&in_place(sequence).mesh);
+            Some(aggregated_torque(&forces, &centres, &centre, &normal))
+        }
+        Measure::StretchingForceDifference => stretching_force_difference(&forces, &centres),
+    }
+}

@@ -1,0 +1,84 @@
+//! Whether curves can be simulated: the check of every curve of a material.
+
+use crate::material::file::MaterialFile;
+use cloth_data::error::{Error, Result};
+use cloth_sim::curve::soundness::{self, BENDING_STIFFNESS, Context, Finding, MEMBRANE_STIFFNESS};
+use cloth_sim::material::{Component, Curves, Model};
+use std::path::Path;
+
+/// What a component's curve is checked against in a model; nothing is known of what is plausible for the ring-2 springs
+/// of a grid.
+///
+/// * `visited` — the strains that a measurement visited, if there was one
+pub fn context(model: Model, component: Component, visited: Option<[f64; 2]>) -> Context {
+    let magnitude = match (component.is_bending(), model) {
+        (false, _) => Some(MEMBRANE_STIFFNESS),
+        (true, Model::Springs) => None,
+        (true, _) => Some(BENDING_STIFFNESS),
+    };
+    Context { magnitude, visited }
+}
+
+/// The findings of every curve of a material, those without any too.
+///
+/// # Errors
+/// Control points that make no curve.
+pub fn check_material(file: &MaterialFile) -> Result<Vec<(Component, Vec<Finding>)>> {
+    let visited = |component| file.curves[&component].visited_strain;
+    Ok(check_curves(file.model, &file.curves()?, visited))
+}
+
+/// The findings of every curve, those without any too.
+///
+/// * `visited` — the strains that a measurement of a component visited, if there was one
+pub fn check_curves(
+    model: Model,
+    curves: &Curves,
+    visited: impl Fn(Component) -> Option<[f64; 2]>,
+) -> Vec<(Component, Vec<Finding>)> {
+    let findings = |component| {
+        let context = context(model, component, visited(component));
+        curves.get(component).map(|curve| soundness::check(curve, &context))
+    };
+    curves.components().filter_map(|component| Some((component, findings(component)?))).collect()
+}
+
+/// Refuses curves whose shape can go wrong in a simulation, whatever their unit; the first defect is named.
+///
+/// * `what` — the file that they come from
+///
+/// # Errors
+/// A curve that is not stable.
+pub fn refuse_unstable(curves: &Curves, what: &Path) -> Result<()> {
+    for component in curves.components() {
+        let findings = curves.get(component).map(|curve| soundness::check(curve, &Context::default()));
+        if let Some(finding) = findings.iter().flatten().find(|finding| finding.is_unstable()) {
+            let found = format!("{finding}: {}", finding.consequence());
+            let expected =
+                "a stable curve (`fit-cloth check --repair` makes one; --allow-unstable takes it as it is)";
+            return Err(Error::input(what, None, component.to_string(), found, expected));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+
+    #[test]
+    fn an_unstable_curve_is_refused_by_its_name() {
+        let curve = |k| StiffnessCurve::new(vec![0.0, 0.1, 0.2], k, NegativeStrain::Odd).unwrap();
+        let with = |shear| {
+            let weft = (Component::StretchWeft, curve(vec![1e9; 3]));
+            [weft, (Component::Shear, shear)].into_iter().collect::<Curves>()
+        };
+        let path = Path::new("material.json");
+        // Another unit may be meant: stable it is.
+        assert!(refuse_unstable(&with(curve(vec![1.0; 3])), path).is_ok());
+        let error = refuse_unstable(&with(curve(vec![9.0, 9.0, 1.0])), path).unwrap_err().to_string();
+        assert!(error.contains("material.json shear: found low-tangent from 0.1"), "{error}");
+        assert!(error.contains("stress falls") && error.contains("--allow-unstable"), "{error}");
+    }
+}

@@ -1,0 +1,78 @@
+//! What is minimised: residuals with their derivative, under linear inequalities.
+
+use crate::optimise::robust::Robust;
+use nalgebra::{DMatrix, DVector};
+
+/// A fitted model: residuals and their derivative at any point.
+pub trait Residuals {
+    /// What makes going on pointless (a file gone, misuse). A point that cannot be evaluated is no error: see
+    /// [`Evaluation::Failed`].
+    type Error;
+
+    /// Evaluates at a point.
+    ///
+    /// Every trial point is evaluated once, with the Jacobian: after an equilibrium its factorisation is at hand and
+    /// serves the sensitivities too. Where the Jacobian is dear, see [`Options::jacobian_at_trials`].
+    ///
+    /// # Errors
+    /// Ends the fit and is handed through.
+    fn evaluate(&mut self, point: &DVector<f64>, jacobian: bool) -> Result<Evaluation, Self::Error>;
+
+    /// How residuals and their Jacobian have been bent, the same at all points of a fit: its curvature enters the steps.
+    fn robust(&self) -> Option<Robust> {
+        None
+    }
+}
+
+/// What became of an evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Evaluation {
+    /// It succeeded. Numbers that are not finite count as failed.
+    Values {
+        /// Measured − simulated, each divided by its noise.
+        residual: DVector<f64>,
+        /// ∂ simulated / ∂ point, divided by the same noise; needed only if asked for.
+        jacobian: Option<DMatrix<f64>>,
+    },
+    /// The model has no answer at this point, for instance no equilibrium: the step is rejected, the region shrinks.
+    Failed {
+        /// Why, as a sentence.
+        reason: String,
+    },
+}
+
+/// The inequalities A k ≥ b, and what to prefer where data see nothing.
+#[derive(Debug, Clone)]
+pub struct Domain {
+    /// A.
+    pub rows: DMatrix<f64>,
+    /// b.
+    pub bounds: DVector<f64>,
+    /// S of [`Smoothing`](crate::optimise::least_squares::Smoothing): the total point is made smooth where the data see nothing. Without it such directions
+    /// stay where they start.
+    pub roughness: Option<DMatrix<f64>>,
+}
+
+impl Domain {
+    /// All of n-space.
+    pub fn everywhere(n: usize) -> Self {
+        Self { rows: DMatrix::zeros(0, n), bounds: DVector::zeros(0), roughness: None }
+    }
+}
+
+pub(super) type Values = (DVector<f64>, Option<DMatrix<f64>>);
+
+/// The values of an evaluation, or why there are none.
+pub(super) fn values(evaluation: Evaluation) -> Result<Values, String> {
+    match evaluation {
+        Evaluation::Failed { reason } => Err(reason),
+        Evaluation::Values { residual, jacobian } => {
+            let finite =
+                residual.iter().chain(jacobian.iter().flat_map(DMatrix::iter)).all(|x| x.is_finite());
+            match finite && residual.norm_squared().is_finite() {
+                true => Ok((residual, jacobian)),
+                false => Err("the residual or its derivative is not finite".to_owned()),
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! A point of the search with its residual, its Jacobian, and the linear model there.
+
+use super::problem::{Domain, Residuals, values};
+use crate::optimise::least_squares::{LeastSquares, Triangle};
+use crate::optimise::robust::Robust;
+use nalgebra::{DMatrix, DVector};
+
+/// A point that has been evaluated.
+pub(super) struct State {
+    pub(super) point: DVector<f64>,
+    pub(super) residual: DVector<f64>,
+    pub(super) jacobian: DMatrix<f64>,
+    pub(super) triangle: Triangle,
+}
+
+impl State {
+    pub(super) fn new(
+        point: DVector<f64>,
+        residual: DVector<f64>,
+        jacobian: DMatrix<f64>,
+        robust: Option<Robust>,
+    ) -> Self {
+        let triangle = match robust {
+            None => Triangle::reduce(&jacobian, &residual),
+            Some(robust) => {
+                let curvature = residual.map(|bent| robust.curvature(bent));
+                let rows = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
+                    curvature[i] * jacobian[(i, j)]
+                });
+                Triangle::reduce(&rows, &residual.component_div(&curvature))
+            }
+        };
+        Self { point, residual, jacobian, triangle }
+    }
+
+    /// The share of the sum of squares that another residual is smaller by. As a product: from sums of squares that
+    /// agree to ten digits six would be left.
+    pub(super) fn gain(&self, residual: &DVector<f64>) -> f64 {
+        (&self.residual - residual).dot(&(&self.residual + residual)) / self.residual.norm_squared()
+    }
+
+    /// The same for a step of the linear model.
+    pub(super) fn promise(&self, step: &DVector<f64>) -> f64 {
+        let moved = &self.triangle.matrix * step;
+        moved.dot(&(2.0 * &self.triangle.target - &moved)) / self.residual.norm_squared()
+    }
+
+    /// The linear model under the inequalities of a step.
+    pub(super) fn linear(&self, domain: &Domain) -> LeastSquares {
+        // What is left of a row at a point that rests on it is the rounding of its terms: that is zero.
+        let bounds = DVector::from_fn(domain.bounds.len(), |i, _| {
+            let terms = (0..self.point.len()).map(|j| domain.rows[(i, j)] * self.point[j]);
+            let (sum, size) =
+                terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
+            let bound = domain.bounds[i] - sum;
+            if bound.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { bound }
+        });
+        let Triangle { matrix, target, .. } = self.triangle.clone();
+        LeastSquares { rows: domain.rows.clone(), bounds, ..LeastSquares::new(matrix, target) }
+    }
+}
+
+/// The state at a point that was accepted: with its Jacobian, which may not have been asked for yet; or why it has none.
+pub(super) fn accepted_state<P: Residuals>(
+    problem: &mut P,
+    point: DVector<f64>,
+    residual: DVector<f64>,
+    jacobian: Option<DMatrix<f64>>,
+) -> Result<Result<State, String>, P::Error> {
+    let jacobian = match jacobian {
+        Some(jacobian) => Ok(jacobian),
+        None => values(problem.evaluate(&point, true)?)
+            .map(|(_, jacobian)| jacobian.unwrap_or_else(|| panic!("the Jacobian was asked for"))),
+    };
+    let robust = problem.robust();
+    Ok(jacobian.map(|jacobian| State::new(point, residual, jacobian, robust)))
+}

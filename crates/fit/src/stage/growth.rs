@@ -1,0 +1,242 @@
+//! A curve grows: one control point, then twice as many segments each time, as long as that pays.
+//!
+//! A number of points that does not pay is passed over once: what bends down and up again, as many knits do, is met by
+//! a line no better than by a constant, but by three or five points. Two in a row that do not pay are the end.
+//!
+//! Source: Miguel et al. 2012, §5.2; differs in the second try, unless [`GrowthRule`](super::GrowthRule) says otherwise.
+
+use super::growth_rule::SIGNIFICANT;
+use super::level::Level;
+use super::settings::{Constraints, Settings};
+use super::watch::{Event, Watch};
+use crate::equilibria::{Objective, Simulation};
+use crate::optimise::gauss_newton::{Domain, Iteration, Outcome, minimise};
+use crate::optimise::uncertainty::{Covariance, variance_left};
+use cloth_sim::curve::{StiffnessCurve, stability_rows};
+use cloth_sim::error::Result;
+use nalgebra::{DMatrix, DVector};
+use std::time::Instant;
+
+/// Residuals up to this share of what is compared are rounding, and none is better than another.
+const ROUNDING: f64 = 1e-12;
+
+/// Residuals are whitened anew once at the minimum of every level, which is compared with others; of the one that is kept
+/// until that moves by less than this share, or so often.
+const SETTLED: f64 = 1e-5;
+const MOST_WHITENINGS: usize = 4;
+
+/// A curve that was grown.
+pub struct Growth {
+    /// The curve.
+    pub curve: StiffnessCurve,
+    /// The fit with its control points.
+    pub outcome: Outcome,
+    /// Its constraints.
+    pub domain: Domain,
+    /// Every level, those too that did not pay and were not kept.
+    pub levels: Vec<Level>,
+    /// Why it ended.
+    pub stopped: String,
+}
+
+/// Where a constant stiffness twice as large would change less than this share of the residual, more points would only
+/// wander: ring-2 springs that lean on softer yarns.
+const FELT: f64 = 0.1;
+
+/// Fits with more and more control points, from the simulation's curve on.
+///
+/// * `lowest_tangent` — dσ/dε is kept above it, N/m
+///
+/// # Errors
+/// Control points that make no curve.
+pub fn grow(
+    simulation: &mut Simulation<'_>,
+    settings: &Settings,
+    lowest_tangent: f64,
+    watch: &mut Watch<'_>,
+) -> Result<Growth> {
+    // A curve with as many points as there are frames meets them all and says nothing; without a known noise one frame
+    // more is needed to judge it by.
+    let spare = usize::from(!simulation.noise_is_known());
+    let carriers = match simulation.task().objective {
+        Objective::Forces => simulation.settled().count(),
+        Objective::Positions => simulation.measurements(),
+    };
+    let most = settings.most_points().min(carriers.saturating_sub(spare)).max(1);
+    let mut levels = Vec::new();
+    let mut kept: Option<(StiffnessCurve, Outcome, Domain)> = None;
+    let rule = settings.growth;
+    let mut curve = simulation.curve().clone();
+    let mut tries = 0;
+    loop {
+        let points = curve.len();
+        let (outcome, domain, level) = fit_level(simulation, &curve, 1, settings, lowest_tangent, watch)?;
+        levels.push(level);
+        curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
+        let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
+        if points == 1 && !felt {
+            let stopped = "one stiffness hardly changes what is compared".to_string();
+            return Ok(Growth { curve, outcome, domain, levels, stopped });
+        }
+        let all = points >= most;
+        let noise = variance_left(&outcome.residual, points, simulation.noise_is_known());
+        let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
+        // Points that the data do not tell apart fit noise: they must gain what chance does not give so many.
+        let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
+        let by_chance = |added: usize| 0.5 * added as f64 * SIGNIFICANT * noise;
+        let pays = |before: f64, after: f64, added: usize| {
+            rule.pays(before.max(rounding), after.max(rounding), noise)
+                && (told_apart || before - after > by_chance(added))
+        };
+        let best = match kept {
+            Some(best) if !pays(best.1.sum_of_squares, outcome.sum_of_squares, points - best.0.len()) => {
+                tries += 1;
+                best
+            }
+            _ => {
+                tries = 0;
+                (curve.clone(), outcome, domain)
+            }
+        };
+        if all || tries == rule.tries {
+            let stopped = match tries {
+                0 if settings.variant.is_linear() => {
+                    "one stiffness is all that a linear variant has".to_string()
+                }
+                0 if points < settings.points => {
+                    format!("the frames carry no more than {points} control points")
+                }
+                0 => format!("all {points} control points are in use"),
+                _ => format!(
+                    "{points} control points lower the residual by less than {:.0} %",
+                    100.0 * rule.gain
+                ),
+            };
+            let (mut curve, mut outcome, domain) = best;
+            if simulation.is_whitened() {
+                let (settled, _, level) =
+                    fit_level(simulation, &curve, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
+                if !settled.residual.is_empty() {
+                    curve = curve.with_stiffnesses(settled.point.iter().copied().collect())?;
+                    outcome = settled;
+                    levels.iter_mut().filter(|l| l.points == curve.len()).for_each(|l| l.go_on(&level));
+                }
+            }
+            return Ok(Growth { curve, outcome, domain, levels, stopped });
+        }
+        kept = Some(best);
+        curve = curve.resampled(next_points(points, most), simulation.reach())?;
+    }
+}
+
+/// Fits again with as many control points as the simulation's curve has, spread over what is visited now.
+///
+/// # Errors
+/// Control points that make no curve.
+pub fn refit(
+    simulation: &mut Simulation<'_>,
+    settings: &Settings,
+    lowest_tangent: f64,
+    watch: &mut Watch<'_>,
+) -> Result<Growth> {
+    let points = simulation.curve().len();
+    let start = simulation.curve().resampled(points, simulation.reach())?;
+    let (outcome, domain, level) =
+        fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
+    let curve = start.with_stiffnesses(outcome.point.iter().copied().collect())?;
+    let stopped = format!("all {points} control points of the pass before are fitted again");
+    Ok(Growth { curve, outcome, domain, levels: vec![level], stopped })
+}
+
+/// One level: a fit with a fixed number of control points.
+///
+/// * `whitenings` — residuals are whitened anew so often at most
+fn fit_level(
+    simulation: &mut Simulation<'_>,
+    curve: &StiffnessCurve,
+    whitenings: usize,
+    settings: &Settings,
+    lowest_tangent: f64,
+    watch: &mut Watch<'_>,
+) -> Result<(Outcome, Domain, Level)> {
+    let clock = Instant::now();
+    let spent_before = watch.meter.read();
+    let points = curve.len();
+    let [unit, measurements] = [simulation.unit(), simulation.measurements() as f64];
+    (watch.observe)(Event::Level { component: simulation.task().fitted[0], points });
+    simulation.set_curve(curve.clone());
+    if let Some(limit) = settings.robust {
+        simulation.make_robust(limit);
+    }
+    let domain = domain(curve, settings.constraints, lowest_tangent)?;
+    let mut observe = |iteration: &Iteration| {
+        let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
+        let factorisations = watch.meter.read().since(&spent_before).factorisations;
+        let seconds = clock.elapsed().as_secs_f64();
+        (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
+    };
+    let (mut iterations, mut projected): (Vec<Iteration>, usize) = (Vec::new(), 0);
+    let mut fit_from = |simulation: &mut Simulation<'_>, start: &DVector<f64>| {
+        let done = iterations.len();
+        let mut numbered = |step: &Iteration| {
+            let step = Iteration { iteration: done + step.iteration, ..step.clone() };
+            observe(&step);
+            iterations.push(step);
+        };
+        match minimise(simulation, start, &domain, &settings.outer, &mut numbered) {
+            Ok(outcome) => {
+                projected += usize::from(outcome.projected);
+                outcome
+            }
+            Err(never) => match never {},
+        }
+    };
+    let mut outcome = fit_from(simulation, &DVector::from_column_slice(curve.stiffnesses()));
+    // How errors of what is held enter depends on the shapes: those of the minimum count, wherever the fit started.
+    for _ in 0..whitenings {
+        if !simulation.is_whitened() || outcome.residual.is_empty() {
+            break;
+        }
+        simulation.set_curve(curve.with_stiffnesses(outcome.point.iter().copied().collect())?);
+        let again = fit_from(simulation, &outcome.point);
+        let moved = (&again.point - &outcome.point).amax() / outcome.point.amax();
+        if again.residual.is_empty() {
+            break;
+        }
+        outcome = again;
+        if moved <= SETTLED {
+            break;
+        }
+    }
+    let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
+    let status = outcome.status.to_string();
+    Ok((outcome, domain, Level { points, rms, status, iterations, projected }))
+}
+
+/// One, two, three, five, nine …: every segment is halved, up to the most that is wanted.
+fn next_points(points: usize, most: usize) -> usize {
+    if points == 1 { 2 } else { 2 * points - 1 }.min(most)
+}
+
+/// The constraints of a curve, and smoothness where data see nothing.
+///
+/// # Errors
+/// Strains that no curve can have.
+pub fn domain(curve: &StiffnessCurve, constraints: Constraints, lowest: f64) -> Result<Domain> {
+    let points = curve.len();
+    let (rows, lowest) = match constraints {
+        Constraints::Stable => (stability_rows(curve.strains())?, lowest),
+        Constraints::ControlPoints => (DMatrix::identity(points, points), 0.0),
+    };
+    let second_difference = |i: usize, j: usize| match j.wrapping_sub(i) {
+        0 | 2 => 1.0,
+        1 => -2.0,
+        _ => 0.0,
+    };
+    let roughness = match points {
+        1 => None,
+        2 => Some(DMatrix::from_row_slice(1, 2, &[1.0, -1.0])),
+        _ => Some(DMatrix::from_fn(points - 2, points, second_difference)),
+    };
+    Ok(Domain { bounds: DVector::from_element(rows.nrows(), lowest), rows, roughness })
+}

@@ -1,0 +1,87 @@
+//! What a stage fits, and on what.
+
+use super::settings::Settings;
+use crate::equilibria::Objective;
+use crate::twin::replica::{Parts, Replica};
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::{Kind, MeasurementSet};
+use cloth_sim::material::Component;
+
+/// The tests that show a component.
+pub fn kinds_of(component: Component) -> &'static [Kind] {
+    match component {
+        Component::StretchWeft => &[Kind::StretchWeft],
+        Component::StretchWarp => &[Kind::StretchWarp],
+        Component::Shear => &[Kind::Shear, Kind::StretchBias],
+        Component::BendWeft => &[Kind::BendWeft],
+        Component::BendWarp => &[Kind::BendWarp],
+        Component::BendDiagonal => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
+    }
+}
+
+/// The tests that show any of some components, each once.
+pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
+    let mut kinds: Vec<Kind> =
+        components.iter().flat_map(|&component| kinds_of(component)).copied().collect();
+    kinds.sort();
+    kinds.dedup();
+    kinds
+}
+
+/// What a stage fits, and on what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plan {
+    /// The components that share the fitted curve: one, or weft and warp of an isotropic variant.
+    pub fitted: Vec<Component>,
+    /// All components that store energy.
+    pub components: Vec<Component>,
+    /// What is compared.
+    pub objective: Objective,
+    /// The tests that show it.
+    pub kinds: Vec<Kind>,
+    /// Sheets between clips stay in their plane.
+    pub flat: bool,
+    /// First or second pass over the component.
+    pub pass: usize,
+}
+
+impl Plan {
+    /// The fitted components by name.
+    pub fn name(&self) -> String {
+        let names: Vec<String> = self.fitted.iter().map(|component| component.to_string()).collect();
+        names.join(" = ")
+    }
+
+    /// The replicas of all sequences of a set that show what is fitted.
+    ///
+    /// # Errors
+    /// Sequences that no replica can be made of.
+    pub fn replicas(&self, set: &MeasurementSet, settings: &Settings) -> Result<Vec<Replica>> {
+        let parts = |kind: Kind| Parts {
+            model: settings.model,
+            components: self.components.clone(),
+            areal_density: set.fabric.areal_density_kg_m2,
+            nodes: settings.nodes,
+            diagonals: settings.diagonals,
+            table: settings.table,
+            // Strips cut on the bias are pulled taut, and nobody saw them buckle.
+            flat: self.flat || kind == Kind::StretchBias,
+        };
+        let shows = set.sequences.iter().filter(|sequence| self.kinds.contains(&sequence.kind));
+        let replicas = shows.map(|sequence| Replica::new(sequence, &parts(sequence.kind)));
+        let strained = |replica: &Replica| self.fitted.iter().any(|&component| replica.shows(component));
+        replicas.filter(|replica| replica.as_ref().map_or(true, strained)).collect()
+    }
+}
+
+/// Sequences that cannot be fitted.
+pub(super) fn unfit(replicas: &[Replica], found: String, expected: &str) -> Error {
+    let names: Vec<&str> = replicas.iter().map(|replica| &replica.name[..]).collect();
+    Error::Geometry { sequence: names.join(", "), found, expected: expected.into() }
+}
+
+/// The mechanics' refusal, with the stage's name.
+pub(super) fn mechanics(plan: &Plan) -> impl Fn(cloth_sim::error::Error) -> Error {
+    let context = plan.name();
+    move |source| Error::Mechanics { context: context.clone(), source }
+}

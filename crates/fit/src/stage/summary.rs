@@ -1,0 +1,279 @@
+//! Turns what a stage left behind into its report.
+
+use super::growth::Growth;
+use super::report::{CurveReport, ForceRow, Histogram, Hysteresis, Sample, SequenceReport};
+use super::shapes::Shapes;
+use crate::equilibria::{Settled, Simulation};
+use crate::optimise::uncertainty::Covariance;
+use cloth_data::frame::Phase;
+use cloth_sim::bending::Rolled;
+use cloth_sim::curve::StiffnessCurve;
+use nalgebra::DVector;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The curve with its bands, over the strains that the simulation's equilibria visit.
+pub(crate) fn curve_report(
+    simulation: &Simulation<'_>,
+    growth: Growth,
+    covariance: &Covariance,
+    observed: bool,
+) -> CurveReport {
+    let Growth { curve, outcome, domain, .. } = growth;
+    let visited @ [low, high] = simulation.visited();
+    // A curve starts at rest, wherever what was seen of it does.
+    let range = [low.min(0.0), high];
+    let slack = &domain.rows * &outcome.point - &domain.bounds;
+    let last = curve.strains()[curve.len() - 1];
+    let rows = Rows { curve: &curve, covariance, rolled: rolled(simulation) };
+    let seen = visited.map(|strain| rows.place(strain));
+    let mut samples = rows.over(range);
+    samples.iter_mut().filter(|sample| sample.strain < seen[0]).for_each(|sample| sample.band = None);
+    CurveReport {
+        observed,
+        points: curve.strains().iter().map(|&strain| rows.at(rows.place(strain))).collect(),
+        samples,
+        histogram: rows.histogram(range, &simulation.strains()),
+        deviations: covariance.standard_deviations(),
+        half_bands: covariance.half_bands(),
+        rank: covariance.rank,
+        unseen: (0..curve.len()).filter(|&i| covariance.unseen.row(i).norm() > 1e-6).collect(),
+        correlations: covariance.correlations(),
+        active_constraints: slack.iter().filter(|s| s.abs() <= 1e-9 * outcome.point.amax()).count(),
+        visited,
+        seen,
+        share_visited: if last > 0.0 { ((high - low.max(0.0)) / last).min(1.0) } else { 1.0 },
+        curve,
+    }
+}
+
+/// How the fitted bending elements meet a rolled sheet; `None` for stretch and shear.
+fn rolled(simulation: &Simulation<'_>) -> Option<Rolled> {
+    let component = simulation.task().fitted[0];
+    simulation.settled().find_map(|s| s.replica.cloth(s.frame).bending()?.rolled(component))
+}
+
+/// Rows of a curve file.
+const SAMPLES: usize = 201;
+
+/// Bins of a histogram.
+const BINS: usize = 40;
+
+/// A curve in the terms of its file: over strain, or over curvature.
+struct Rows<'a> {
+    curve: &'a StiffnessCurve,
+    covariance: &'a Covariance,
+    rolled: Option<Rolled>,
+}
+
+impl Rows<'_> {
+    /// Evenly spaced rows over a range of strains.
+    fn over(&self, range: [f64; 2]) -> Vec<Sample> {
+        let [low, high] = range.map(|strain| self.place(strain));
+        (0..SAMPLES).map(|i| self.at(low + (high - low) * i as f64 / (SAMPLES - 1) as f64)).collect()
+    }
+
+    /// How often the strains within a range were met.
+    ///
+    /// * `strains` — each with the area it stands for
+    fn histogram(&self, range: [f64; 2], strains: &[[f64; 2]]) -> Histogram {
+        let range @ [low, high] = range.map(|strain| self.place(strain));
+        let all: f64 = strains.iter().map(|[_, area]| area).sum();
+        let mut shares = vec![0.0; BINS];
+        for [strain, area] in strains {
+            let bin = (BINS as f64 * (self.place(*strain) - low) / (high - low)).floor();
+            // What is not finite is in no bin either.
+            if (0.0..BINS as f64).contains(&bin) {
+                shares[bin as usize] += area / all;
+            }
+        }
+        Histogram { range, shares }
+    }
+
+    /// The strain, or the curvature of it.
+    fn place(&self, strain: f64) -> f64 {
+        self.rolled.map_or(strain, |rolled| rolled.curvature(strain))
+    }
+
+    fn at(&self, place: f64) -> Sample {
+        let (curve, rolled) = (self.curve, self.rolled);
+        let strain = rolled.map_or(place, |rolled| rolled.strain(place));
+        let lever = rolled.map_or(1.0, |rolled| rolled.lever(place));
+        let stress = lever * curve.stress(strain);
+        let mut weights = vec![0.0; curve.len()];
+        curve.weights(strain, &mut weights);
+        let half = self.covariance.half_band(&DVector::from_vec(weights));
+        // Stress has the sign of strain: what lies beyond zero is not possible.
+        let band = half.map(|half| {
+            let [low, high] = [stress - lever * half, stress + lever * half];
+            if strain >= 0.0 { [low.max(0.0), high] } else { [low, high.min(0.0)] }
+        });
+        let stiffness = match rolled {
+            None | Some(Rolled::Hinges) if place == 0.0 => {
+                curve.stiffness(0.0) * rolled.map_or(1.0, |rolled| rolled.strain(1.0))
+            }
+            // Ring-2 springs do not resist the first bend.
+            Some(Rolled::Springs { .. }) if place == 0.0 => 0.0,
+            _ => stress / place,
+        };
+        Sample { strain: place, stiffness, stress, band }
+    }
+}
+
+/// How every sequence was met.
+///
+/// * `forces` — simulated along the measured components of every frame, N
+pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>]) -> Vec<SequenceReport> {
+    let mut reports: Vec<SequenceReport> = Vec::new();
+    let mut sums: Vec<[f64; 4]> = Vec::new();
+    let mut positions: Vec<(f64, usize)> = Vec::new();
+    // Frames with the distance of their shape.
+    let mut shapes: Vec<Vec<(usize, f64)>> = Vec::new();
+    for (settled, simulated) in simulation.settled().zip(forces) {
+        let Settled { replica, frame, x, multi_stable } = settled;
+        let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
+            let grid = &replica.specimen.grid;
+            reports.push(SequenceReport {
+                name: replica.name.clone(),
+                kind: replica.kind,
+                frames: 0,
+                at_rest: replica.frames_at_rest,
+                planar: replica.planar,
+                nodes: [grid.columns, grid.rows],
+                force_rms: None,
+                force_largest: 0.0,
+                extension: 0.0,
+                position_rms: None,
+                outliers: Vec::new(),
+                multi_stable: Vec::new(),
+                hysteresis: None,
+                forces: Vec::new(),
+                shapes: Shapes::of(replica),
+            });
+            sums.push([0.0; 4]);
+            positions.push((0.0, 0));
+            shapes.push(Vec::new());
+            reports.len() - 1
+        });
+        let report = &mut reports[at];
+        report.frames += 1;
+        report.extension = report.extension.max(frame.extension);
+        report.shapes.push(&settled);
+        if multi_stable {
+            report.multi_stable.push(frame.index);
+        }
+        for (component, &cloth) in frame.forces.iter().zip(simulated) {
+            // The simulated cord force: what the cloth pulls with, less the clip's weight.
+            let simulated = cloth + component.measured - component.force;
+            let [up, up_square, down, down_square] = &mut sums[at];
+            let branch = match frame.phase {
+                Phase::Loading => Some([up, up_square]),
+                Phase::Unloading => Some([down, down_square]),
+                Phase::Hold => None,
+            };
+            if let Some([product, square]) = branch {
+                *product += component.measured * simulated;
+                *square += simulated * simulated;
+            }
+            report.force_largest = report.force_largest.max(component.measured.abs());
+            report.forces.push(ForceRow {
+                frame: frame.index,
+                phase: frame.phase,
+                clip: component.clip,
+                number: component.number,
+                direction: component.direction,
+                world: replica.specimen.frame.rotation.inverse() * component.direction,
+                extension: frame.extension,
+                measured: component.measured,
+                simulated,
+            });
+        }
+        // Where a shape is one of several, its distance from another is no measure (Miguel et al. 2012, §6).
+        let compared = frame.observed.iter().filter(|_| !multi_stable);
+        let free: BTreeSet<usize> =
+            replica.cloth(frame).free_coordinates().iter().map(|(c, _)| c / 3).collect();
+        let (mut squares, mut seen) = (0.0, 0);
+        for observed in compared {
+            for &node in &free {
+                let place = 3 * node..3 * node + 3;
+                let square: f64 =
+                    observed[place.clone()].iter().zip(&x[place]).map(|(o, x)| (o - x) * (o - x)).sum();
+                if square.is_finite() {
+                    squares += square;
+                    seen += 1;
+                }
+            }
+        }
+        positions[at].0 += squares;
+        positions[at].1 += seen;
+        if seen > 0 {
+            shapes[at].push((frame.index, (squares / seen as f64).sqrt()));
+        }
+    }
+    for (((report, [up, up_square, down, down_square]), (square, seen)), shapes) in
+        reports.iter_mut().zip(sums).zip(positions).zip(shapes)
+    {
+        let squares: f64 = report.forces.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
+        let count = report.forces.len();
+        report.force_rms = (count > 0).then(|| (squares / count as f64).sqrt());
+        report.outliers = match count {
+            0 => shape_outliers(&shapes, report.extension),
+            _ => force_outliers(&report.forces),
+        };
+        report.position_rms = (seen > 0).then(|| (square / seen as f64).sqrt());
+        if up_square > 0.0 && down_square > 0.0 {
+            report.hysteresis = Some(Hysteresis { loading: up / up_square, unloading: down / down_square });
+        }
+    }
+    reports
+}
+
+/// Frames whose force stands out from its neighbours' of the same clip and direction: by more than a fiftieth of the
+/// largest force, and as [`standing_out`] says.
+fn force_outliers(rows: &[ForceRow]) -> Vec<usize> {
+    let largest = rows.iter().map(|row| row.measured.abs()).fold(0.0, f64::max);
+    let mut tracks: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
+    for row in rows {
+        let track = tracks.entry((row.clip, row.number)).or_default();
+        track.push((row.frame, row.measured - row.simulated));
+    }
+    farthest_first(tracks.values().flat_map(|track| standing_out(track, 0.02 * largest)).collect())
+}
+
+/// Frames whose shape is farther from the simulated one than its neighbours' are, by more than a fiftieth of the largest
+/// overhang.
+///
+/// * `shapes` — frames with the root mean square distance of their nodes, m
+fn shape_outliers(shapes: &[(usize, f64)], overhang: f64) -> Vec<usize> {
+    farthest_first(standing_out(shapes, 0.02 * overhang))
+}
+
+/// Frames whose residual is off the median of its neighbours' by more than a least figure, and by more than six times the
+/// robust standard deviation of such differences (Hampel 1974); and by how much. A smooth misfit, shared by neighbours, is
+/// none.
+fn standing_out(track: &[(usize, f64)], least: f64) -> Vec<(usize, f64)> {
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    };
+    let residual: Vec<f64> = track.iter().map(|(_, residual)| *residual).collect();
+    let apart: Vec<f64> = (0..residual.len())
+        .map(|i| {
+            let around = i.saturating_sub(2)..(i + 3).min(residual.len());
+            (residual[i] - median(residual[around].to_vec())).abs()
+        })
+        .collect();
+    let limit = (6.0 * 1.4826 * median(apart.clone())).max(least);
+    track.iter().map(|(frame, _)| *frame).zip(apart).filter(|(_, apart)| *apart > limit).collect()
+}
+
+/// Each frame once, the farthest first: it drags the fit, and others with it.
+fn farthest_first(mut frames: Vec<(usize, f64)>) -> Vec<usize> {
+    frames.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let mut found: Vec<usize> = Vec::new();
+    for (frame, _) in frames {
+        if !found.contains(&frame) {
+            found.push(frame);
+        }
+    }
+    found
+}

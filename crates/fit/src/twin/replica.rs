@@ -1,0 +1,504 @@
+//! The simulated replica of a measured sequence: a cloth held as the measured one was, and per frame where it is held,
+//! what was measured, and a shape to start from.
+//!
+//! Source: Miguel et al. 2012, §5.1. What is held, which frames are used and how shapes are blended: docs/model.md.
+
+mod blend;
+mod clips;
+mod force_component;
+mod table;
+
+use crate::twin::in_place;
+use crate::twin::specimen::{Specimen, near_square};
+use blend::Blend;
+use clips::Grip;
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::{HEIGHT_SEEN, Kind, Phase, Sequence};
+use cloth_data::rectangle::FLAT_SLOPE;
+use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::load::Held;
+use cloth_sim::material::{Component, Model};
+use cloth_sim::mesh::{Diagonals, Grid};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use table::{Lines, Overhang};
+
+pub use force_component::ForceComponent;
+pub use table::TableHold;
+
+/// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
+const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
+
+/// Noise of a vertex where none is told, m. Waves that this hides change shear by little; those of a millimetre make a sheet
+/// of 0.1 m a fifth softer.
+const CLEAR: f64 = 1e-4;
+
+/// Bending strains of rounding, 1/m: those of springs, which have no unit, are as small.
+const FLAT: f64 = 1e-9;
+
+/// What replicas are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// Which membrane and bending.
+    pub model: Model,
+    /// The components that store energy.
+    pub components: Vec<Component>,
+    /// kg/m².
+    pub areal_density: f64,
+    /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
+    pub nodes: Option<[usize; 2]>,
+    /// How cells are split.
+    pub diagonals: Diagonals,
+    /// What a table holds, and how the rest may move.
+    pub table: TableHold,
+    /// All motion stays in the plane, and weight across it is left out: for parts without bending, which in space would
+    /// crumple where they are pressed together.
+    pub flat: bool,
+}
+
+/// A measured sequence made ready for simulation; all in the specimen's own frame.
+#[derive(Debug)]
+pub struct Replica {
+    /// Name of the sequence.
+    pub name: String,
+    /// Which test it is.
+    pub kind: Kind,
+    /// The grid.
+    pub specimen: Specimen,
+    /// The cloth, once for every set of nodes that some frame holds.
+    pub cloths: Vec<Cloth>,
+    /// Per group of held nodes a weight a node: 1 at its own nodes, 0 at the others', harmonic between. It is the virtual
+    /// displacement under which that group alone does work. Empty on a table.
+    pub fields: Vec<Vec<f64>>,
+    /// The frames that are used.
+    pub frames: Vec<ReplicaFrame>,
+    /// How many frames of the sequence were left out because nothing happens there, or nothing was measured.
+    pub frames_at_rest: usize,
+    /// Vertices, over all frames, that were seen too far off a table's line to tell its place.
+    pub vertices_left_out: usize,
+    /// Two unknowns a node.
+    pub planar: bool,
+    /// Standard deviation of a force component, N, where known.
+    pub force_noise: Option<f64>,
+    /// Standard deviation of a vertex coordinate, m, where known.
+    pub position_noise: Option<f64>,
+    /// kg/m².
+    pub areal_density: f64,
+    /// Weight per area, N/m².
+    pub weight: Vector3<f64>,
+    /// The lines along a table's edge.
+    lines: Option<Lines>,
+    /// Per node: noise of its coordinates as a share of a vertex's, since a node between vertices sees their mean.
+    pub spread: Vec<f64>,
+    /// Noise of the place of a held line off a table, as a share of a vertex's: the line is the mean of many. 0 between
+    /// clips, and where it is not to count.
+    pub held_spread: f64,
+}
+
+/// One frame of a replica.
+#[derive(Debug, Clone)]
+pub struct ReplicaFrame {
+    /// Index in the sequence.
+    pub index: usize,
+    /// Index of its cloth.
+    pub cloth: usize,
+    /// Loading or unloading; measured, or from the extension.
+    pub phase: Phase,
+    /// How far the test went: mean relative change of distance between the clips; the effective shear angle, rad, where
+    /// bars shear; the length that hangs over a table's edge, m.
+    pub extension: f64,
+    /// A state to start from, 3 stacked coordinates a node, m: what is held in place, the rest blended between clips, or
+    /// where it was seen off a table, smoothed if it bends as a cylinder.
+    pub start: Vec<f64>,
+    /// Where the nodes were seen, 3 stacked coordinates a node, m; `None` = no shape measured, NaN = this node not.
+    pub observed: Option<Vec<f64>>,
+    /// The components of clip forces that were measured.
+    pub forces: Vec<ForceComponent>,
+}
+
+impl Replica {
+    /// Makes the replica of a sequence.
+    ///
+    /// # Errors
+    /// A rest mesh that is no rectangle; neither clips nor a table; clips that claim the same node and disagree; no frame in
+    /// which anything happens or is measured; springs in long cells; what the mechanics refuse.
+    pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
+        let sequence = &*in_place(sequence);
+        // On the bias the yarns run along the cells' diagonals: triangles without an edge along each would lock.
+        let diagonals = match (sequence.kind, parts.model) {
+            (Kind::StretchBias, Model::Stvk | Model::SoftConstraint) => Diagonals::Crossed,
+            _ => parts.diagonals,
+        };
+        let specimen = Specimen::new(sequence, parts.nodes, diagonals)?;
+        check_cells(sequence, &specimen, parts.model)?;
+        let gravity = specimen.turn(&sequence.gravity);
+        // A component of gravity that rounding left after turning is none.
+        let mut gravity = gravity.map(|g| if g.abs() <= 1e-9 * gravity.norm() { 0.0 } else { g });
+        if parts.flat {
+            gravity.z = 0.0;
+        }
+        let observed = |positions: &Vec<Vector3<f64>>| -> Vec<f64> {
+            let places = specimen.samples.iter().map(|s| s.interpolate(&sequence.mesh, positions));
+            places.map(|p| specimen.place(&p)).flat_map(|p| [p.x, p.y, p.z]).collect()
+        };
+        let shapes = sequence.frames.iter().map(|frame| frame.positions.as_ref().map(observed)).collect();
+        let noise = sequence.noise;
+        let mut replica = Self {
+            name: sequence.name.clone(),
+            kind: sequence.kind,
+            cloths: Vec::new(),
+            fields: Vec::new(),
+            frames: Vec::new(),
+            frames_at_rest: 0,
+            vertices_left_out: 0,
+            planar: false,
+            areal_density: parts.areal_density,
+            weight: gravity * parts.areal_density,
+            lines: None,
+            force_noise: noise.and_then(|noise| noise.force_n),
+            position_noise: noise.and_then(|noise| noise.position_m),
+            spread: specimen
+                .samples
+                .iter()
+                .map(|s| s.weights.iter().map(|w| w * w).sum::<f64>().sqrt())
+                .collect(),
+            held_spread: 0.0,
+            specimen,
+        };
+        match (sequence.clips.is_empty(), sequence.table) {
+            (false, _) => replica.hold_by_clips(sequence, parts, gravity, shapes)?,
+            (true, Some(_)) => replica.lay_on_table(sequence, parts, gravity, shapes)?,
+            (true, None) => {
+                return Err(Error::geometry(
+                    &sequence.name,
+                    "no clip and no table",
+                    "a sequence held by clips, or pushed over the edge of a table",
+                ));
+            }
+        }
+        if replica.frames.is_empty() {
+            return Err(Error::geometry(
+                &sequence.name,
+                "no frame in which the specimen is deformed and measured",
+                "clips that move apart, with their forces (clips.csv, forces.csv), or shapes with an overhang (positions.npy)",
+            ));
+        }
+        replica.frames_at_rest = sequence.frames.len() - replica.frames.len();
+        Ok(replica)
+    }
+
+    /// The cloth of a frame.
+    pub fn cloth(&self, frame: &ReplicaFrame) -> &Cloth {
+        &self.cloths[frame.cloth]
+    }
+
+    /// Flexural rigidity by Peirce's formula from a frame's overhang, N·m, and a typical curvature there, 1/m; `None` where
+    /// nothing hangs.
+    pub fn peirce(&self, frame: &ReplicaFrame) -> Option<[f64; 2]> {
+        let chord = self.lines.as_ref()?.chord(&frame.start)?;
+        let weight = self.weight.norm();
+        let drop = chord.dot(&self.weight) / weight;
+        let angle = (drop / chord.norm()).asin().clamp(0.01, 1.5);
+        let length = frame.extension;
+        let rigidity = weight * length.powi(3) * (0.5 * angle).cos() / (8.0 * angle.tan());
+        Some([rigidity, (2.0 * angle / length).max(f64::MIN_POSITIVE)])
+    }
+
+    /// The free coordinates of a frame that were seen: their unknown, and their index.
+    pub fn seen_unknowns<'r>(&'r self, frame: &'r ReplicaFrame) -> impl Iterator<Item = (usize, usize)> + 'r {
+        let free = self.cloth(frame).free_coordinates();
+        frame.observed.iter().flat_map(move |observed| {
+            let seen = free.iter().filter(|(coordinate, _)| observed[*coordinate].is_finite());
+            seen.map(|&(coordinate, unknown)| (unknown, coordinate))
+        })
+    }
+
+    /// True if the sheet lies on a table.
+    pub fn is_on_table(&self) -> bool {
+        self.lines.is_some()
+    }
+
+    /// True if it tells of a component. A sheet that bends as a cylinder leaves hinges across its lines flat.
+    pub fn shows(&self, component: Component) -> bool {
+        let bends = |component: Component| {
+            let strains = self.frames.iter().flat_map(|f| self.cloth(f).strains(component, &f.start));
+            component.is_bending() && strains.into_iter().any(|[strain, _]| strain.abs() > FLAT)
+        };
+        let rolls = self.lines.as_ref().is_some_and(|lines| !lines.tied().is_empty());
+        !rolls || bends(component) || !Component::ALL.into_iter().any(bends)
+    }
+
+    /// The sheet at rest, 3 stacked coordinates a node, m.
+    pub fn rest(&self) -> Vec<f64> {
+        self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
+    }
+
+    /// True if a sheet between clips moves in space, and was not seen to stay flat.
+    pub fn may_buckle(&self) -> bool {
+        let unsure =
+            |frame: &ReplicaFrame| flatness(frame.observed.as_ref(), self.position_noise) != Some(true);
+        !self.planar && self.lines.is_none() && self.frames.iter().any(unsure)
+    }
+
+    /// True if a sheet between clips was seen to leave its plane, and may do so.
+    pub fn is_buckled(&self, frame: &ReplicaFrame) -> bool {
+        let seen = flatness(frame.observed.as_ref(), self.position_noise) == Some(false);
+        seen && !self.planar && self.lines.is_none()
+    }
+
+    fn hold_by_clips(
+        &mut self,
+        sequence: &Sequence,
+        parts: &Parts,
+        gravity: Vector3<f64>,
+        shapes: Vec<Option<Vec<f64>>>,
+    ) -> Result<()> {
+        let specimen = &self.specimen;
+        let grip = Grip::new(sequence, specimen)?;
+        let blend = Blend::new(&specimen.mesh, grip.group_of.iter().map(Option::is_some).collect());
+        let mut starts: Vec<Vec<f64>> = sequence
+            .frames
+            .iter()
+            .map(|frame| blend.shape(&specimen.mesh, |node| grip.place(specimen, frame, node)))
+            .collect();
+        let bends = parts.components.iter().any(|component| component.is_bending());
+        // A sheared sheet that nobody saw may have buckled.
+        let leaves_plane = |shape: &Option<Vec<f64>>| match flatness(shape.as_ref(), self.position_noise) {
+            Some(flat) => !flat,
+            None => sequence.kind == Kind::Shear,
+        };
+        self.planar = parts.flat
+            || gravity.z.abs() <= FLAT_SLOPE * gravity.norm()
+                && starts.iter().all(|x| is_planar(x, &grip.group_of, specimen))
+                && !(bends && shapes.iter().any(leaves_plane));
+        if parts.flat {
+            starts.iter_mut().for_each(|x| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 0.0));
+        }
+        let held = grip
+            .group_of
+            .iter()
+            .enumerate()
+            .filter_map(|(node, group)| Some(Held { node, clip: Some((*group)?) }));
+        self.cloths.push(cloth(
+            sequence,
+            parts,
+            specimen,
+            gravity,
+            &held.collect::<Vec<_>>(),
+            &[],
+            self.planar,
+        )?);
+        self.fields = (0..grip.groups.len())
+            .map(|group| {
+                let own = |holder: &Option<usize>| if *holder == Some(group) { 1.0 } else { 0.0 };
+                let mut field: Vec<f64> = grip.group_of.iter().map(own).collect();
+                blend.extend(&mut field);
+                field
+            })
+            .collect();
+        let extensions: Vec<f64> =
+            starts.iter().map(|x| grip.extension(sequence.kind, specimen, x)).collect();
+        let largest = extensions.iter().fold(0.0f64, |m, &e| m.max(e));
+        // A clip bears its own weight, and that of the cloth inside it.
+        let weights: Vec<Vector3<f64>> = sequence
+            .clips
+            .iter()
+            .zip(&specimen.gripped)
+            .map(|(clip, gripped)| gravity * (clip.mass_kg + parts.areal_density * gripped))
+            .collect();
+        for (index, ((frame, start), observed)) in sequence.frames.iter().zip(starts).zip(shapes).enumerate()
+        {
+            // A sheet without shear that is not stretched is singular: such a frame carries no information.
+            if extensions[index] <= 1e-3 * largest {
+                continue;
+            }
+            let forces = grip.forces(sequence, frame, specimen, &weights, self.planar);
+            if forces.is_empty() {
+                continue;
+            }
+            let phase = frame.phase.unwrap_or_else(|| phase_of(&extensions, index));
+            let extension = extensions[index];
+            self.frames.push(ReplicaFrame { index, cloth: 0, phase, extension, start, observed, forces });
+        }
+        Ok(())
+    }
+
+    fn lay_on_table(
+        &mut self,
+        sequence: &Sequence,
+        parts: &Parts,
+        gravity: Vector3<f64>,
+        shapes: Vec<Option<Vec<f64>>>,
+    ) -> Result<()> {
+        let lines = Lines::new(sequence, &self.specimen, &shapes, parts.table)?;
+        let overhangs: Vec<Option<Overhang>> = shapes
+            .iter()
+            .map(|shape| shape.as_ref().and_then(|shape| lines.overhang(&self.specimen, shape)))
+            .collect();
+        let lengths: Vec<f64> =
+            overhangs.iter().map(|overhang| overhang.as_ref().map_or(0.0, |o| o.length)).collect();
+        let mut cloth_of: BTreeMap<usize, usize> = BTreeMap::new();
+        for (index, ((frame, overhang), observed)) in
+            sequence.frames.iter().zip(overhangs).zip(shapes).enumerate()
+        {
+            let Some(Overhang { held, length, left_out, start }) = overhang else { continue };
+            self.vertices_left_out += left_out;
+            let cloth = match cloth_of.get(&held) {
+                Some(&known) => known,
+                None => {
+                    let nodes: Vec<Held> = lines.held(held).collect();
+                    let tied = lines.tied();
+                    self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, tied, false)?);
+                    cloth_of.insert(held, self.cloths.len() - 1);
+                    self.cloths.len() - 1
+                }
+            };
+            let phase = frame.phase.unwrap_or_else(|| phase_of(&lengths, index));
+            let (extension, forces) = (length, Vec::new());
+            self.frames.push(ReplicaFrame { index, cloth, phase, extension, start, observed, forces });
+        }
+        if parts.table.whitened {
+            self.held_spread = lines.spread(&self.spread);
+        }
+        self.lines = Some(lines);
+        Ok(())
+    }
+}
+
+fn cloth(
+    sequence: &Sequence,
+    parts: &Parts,
+    specimen: &Specimen,
+    gravity: Vector3<f64>,
+    held: &[Held],
+    tied: &[Vec<usize>],
+    planar: bool,
+) -> Result<Cloth> {
+    // What stays in its plane does not bend.
+    let bends = |component: &Component| component.is_bending() && planar;
+    let components: Vec<Component> = parts.components.iter().copied().filter(|c| !bends(c)).collect();
+    Cloth::new(&Problem {
+        mesh: &specimen.mesh,
+        model: parts.model,
+        components: &components,
+        areal_density: parts.areal_density,
+        gravity,
+        held,
+        tied,
+        guided: &[],
+        planar,
+    })
+    .map_err(|source| Error::Mechanics { context: sequence.name.clone(), source })
+}
+
+/// Refuses cells in which springs would not be what they are meant for.
+fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result<()> {
+    let [dx, dy] = specimen.grid.cell();
+    if model != Model::Springs || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
+        return Ok(());
+    }
+    let Grid { width, height, diagonals, .. } = specimen.grid;
+    let [columns, rows] = near_square(width, height, diagonals);
+    Err(Error::geometry(
+        &sequence.name,
+        format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
+        &format!(
+            "cells at most 2.4 times as long as wide: nodes by the specimen's sides, as {columns}x{rows}"
+        ),
+    ))
+}
+
+/// True if the clips' nodes leave their common plane z = const so little that flattening changes no strain noticeably.
+fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool {
+    let heights = (0..group_of.len()).filter(|&node| group_of[node].is_some()).map(|node| x[3 * node + 2]);
+    let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
+    let side = specimen.grid.width.min(specimen.grid.height);
+    high - low <= FLAT_SLOPE * side
+}
+
+/// Whether an observed shape stays in its plane, but for what noise makes of it; `None` where less than half of it was
+/// seen, no height was, or noise could hide a buckle.
+fn flatness(shape: Option<&Vec<f64>>, noise: Option<f64>) -> Option<bool> {
+    let shape = shape?;
+    let heights: Vec<f64> = shape.iter().skip(2).step_by(3).copied().filter(|z| z.is_finite()).collect();
+    if 6 * heights.len() < shape.len() {
+        return None;
+    }
+    let count = heights.len() as f64;
+    let mean = heights.iter().sum::<f64>() / count;
+    let deviation = (heights.iter().map(|z| (z - mean) * (z - mean)).sum::<f64>() / count).sqrt();
+    if deviation <= HEIGHT_SEEN {
+        return None;
+    }
+    if deviation > 3.0 * noise.unwrap_or(CLEAR) {
+        return Some(false);
+    }
+    (deviation <= 3.0 * CLEAR).then_some(true)
+}
+
+/// Loading while the extension grows.
+fn phase_of(extensions: &[f64], index: usize) -> Phase {
+    let [before, after] = [index.saturating_sub(1), (index + 1).min(extensions.len() - 1)];
+    match extensions[index] - extensions[before] {
+        growth if growth > 0.0 => Phase::Loading,
+        growth if growth < 0.0 => Phase::Unloading,
+        _ if extensions[after] > extensions[index] => Phase::Loading,
+        _ => Phase::Hold,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::mesh::Grid;
+
+    #[test]
+    fn a_sheet_is_flat_only_where_it_was_seen_to_be() {
+        let waves = |height: f64, seen: usize| -> Vec<f64> {
+            let z = |node: usize| if node >= seen { f64::NAN } else { height * f64::from(node as u8 % 2) };
+            (0..100).flat_map(|node| [0.0, 0.0, z(node)]).collect()
+        };
+        // Waves deviate by half their height.
+        assert_eq!(flatness(Some(&waves(1e-4, 100)), Some(7.5e-5)), Some(true));
+        assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-5)), Some(false));
+        assert_eq!(flatness(Some(&waves(1e-3, 100)), None), Some(false));
+        assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-4)), None);
+        assert_eq!(flatness(Some(&waves(1e-6, 100)), Some(7.5e-4)), Some(true));
+        assert_eq!(flatness(Some(&waves(0.0, 100)), Some(7.5e-4)), None);
+        assert_eq!(flatness(Some(&waves(1e-4, 49)), Some(7.5e-5)), None);
+        assert_eq!(flatness(None, None), None);
+    }
+
+    #[test]
+    fn springs_in_long_cells_are_refused() {
+        let side = 0.1;
+        let square = Grid { columns: 2, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
+        let sequence = Sequence {
+            name: "square".into(),
+            kind: Kind::StretchWeft,
+            gravity: Vector3::zeros(),
+            noise: None,
+            force_direction: None,
+            table: None,
+            mesh: square.mesh().unwrap(),
+            clips: Vec::new(),
+            frames: Vec::new(),
+        };
+        let message = |model, nodes| {
+            let parts = Parts {
+                model,
+                components: vec![Component::StretchWeft],
+                areal_density: 0.2,
+                nodes: Some(nodes),
+                diagonals: Diagonals::Forward,
+                table: TableHold::default(),
+                flat: false,
+            };
+            Replica::new(&sequence, &parts).unwrap_err().to_string()
+        };
+        let long = "sequence square: found springs in cells of 8.33e-3 m × 2.50e-2 m";
+        assert!(message(Model::Springs, [13, 5]).starts_with(long));
+        assert!(message(Model::Springs, [13, 7]).contains("found no clip"));
+        assert!(message(Model::Stvk, [13, 5]).contains("found no clip"));
+    }
+}

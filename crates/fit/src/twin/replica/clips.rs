@@ -1,0 +1,226 @@
+//! Which nodes the clips hold, and which forces that gives: what a replica takes from a sequence with clips.
+
+use super::force_component::ForceComponent;
+use crate::twin::specimen::Specimen;
+use cloth_data::error::{Error, Result};
+use cloth_data::frame::{Frame, Kind, Sequence};
+use cloth_data::measure::effective_shear;
+use cloth_data::rectangle::bounds;
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+/// Lines this near to one another, in cells, are one: rounding.
+const TIE: f64 = 1e-6;
+
+/// The nodes that clips hold, in groups: one a clip, and one for every pair of clips that share nodes, as two bars of a
+/// picture frame share a corner.
+#[derive(Debug, Clone)]
+pub(super) struct Grip {
+    /// The group of each node that is held.
+    pub(super) group_of: Vec<Option<usize>>,
+    /// The clips of each group.
+    pub(super) groups: Vec<[usize; 2]>,
+}
+
+impl Grip {
+    /// The nodes on the grid's lines nearest to each clip's vertices, and between them.
+    ///
+    /// The box around a clip's vertices is widened to whole lines: the centre of a crossed cell is held where all of its
+    /// cell is. By distance alone, half a cell, a clamp would hold a row of centres beyond its edge, and a strip cut on
+    /// the bias be too short to first order in the cell.
+    ///
+    /// # Errors
+    /// Clips that claim the same node and disagree where it is; a clip without a node of its own.
+    pub(super) fn new(sequence: &Sequence, specimen: &Specimen) -> Result<Self> {
+        let clips = sequence.clips.len();
+        let mut grip = Self {
+            group_of: vec![None; specimen.mesh.len()],
+            groups: (0..clips).map(|clip| [clip, clip]).collect(),
+        };
+        let cell = Vector2::from(specimen.grid.cell());
+        for (clip, gripped) in sequence.clips.iter().enumerate() {
+            let places = gripped.vertices.iter().map(|&v| specimen.place(&sequence.mesh.positions[v]).xy());
+            let [low, high] = bounds(places);
+            // Of two lines equally near both are held.
+            let low = low.component_div(&cell).map(|line| (line - 0.5 - TIE).ceil() - TIE);
+            let high = high.component_div(&cell).map(|line| (line + 0.5 + TIE).floor() + TIE);
+            for node in 0..specimen.mesh.len() {
+                let line = specimen.mesh.positions[node].xy().component_div(&cell);
+                if line >= low && line <= high {
+                    grip.claim(node, clip, sequence, specimen)?;
+                }
+            }
+        }
+        match (0..clips).find(|&clip| !grip.group_of.contains(&Some(clip))) {
+            Some(clip) => Err(Error::geometry(
+                &sequence.name,
+                format!("clip {} holds no node of its own", sequence.clips[clip].name),
+                "clips that do not overlap, on the specimen",
+            )),
+            None => Ok(grip),
+        }
+    }
+
+    fn claim(&mut self, node: usize, clip: usize, sequence: &Sequence, specimen: &Specimen) -> Result<()> {
+        let Some(group) = self.group_of[node] else {
+            self.group_of[node] = Some(clip);
+            return Ok(());
+        };
+        let other = self.groups[group][0];
+        let world = specimen.rest_in_world(node);
+        let apart = |frame: &Frame| (moved(frame, clip, &world) - moved(frame, other, &world)).norm();
+        if let Some(frame) = sequence.frames.iter().position(|frame| apart(frame) > 1e-6) {
+            return Err(Error::geometry(
+                &sequence.name,
+                format!(
+                    "clips {} and {} both hold a node and put it {:.2e} m apart in frame {frame}",
+                    sequence.clips[other].name,
+                    sequence.clips[clip].name,
+                    apart(&sequence.frames[frame])
+                ),
+                "clips that do not overlap (they grip what lies within half a simulation cell), and poses that map rest points to where \
+                 they are, x = R(q) x_rest + t",
+            ));
+        }
+        let pair = [other, clip];
+        let known = self.groups.iter().position(|group| *group == pair);
+        self.group_of[node] = Some(known.unwrap_or_else(|| {
+            self.groups.push(pair);
+            self.groups.len() - 1
+        }));
+        Ok(())
+    }
+
+    /// Where a frame's clips take a held node, in the specimen's frame.
+    pub(super) fn place(&self, specimen: &Specimen, frame: &Frame, node: usize) -> Vector3<f64> {
+        match self.group_of[node] {
+            Some(group) => {
+                specimen.place(&moved(frame, self.groups[group][0], &specimen.rest_in_world(node)))
+            }
+            None => specimen.mesh.positions[node],
+        }
+    }
+
+    /// Mean relative change of distance between the clips' centres.
+    fn separation(&self, specimen: &Specimen, x: &[f64]) -> f64 {
+        let clips = self.groups.iter().filter(|[a, b]| a == b).count();
+        let centres = |position: &dyn Fn(usize) -> Vector3<f64>| -> Vec<Vector3<f64>> {
+            let nodes =
+                |clip| (0..self.group_of.len()).filter(move |&node| self.group_of[node] == Some(clip));
+            (0..clips)
+                .map(|clip| nodes(clip).map(position).sum::<Vector3<f64>>() / nodes(clip).count() as f64)
+                .collect()
+        };
+        let now = centres(&|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3]));
+        let rest = centres(&|node| specimen.mesh.positions[node]);
+        let mut strains = Vec::new();
+        for a in 0..clips {
+            for b in 0..a {
+                strains.push((now[a] - now[b]).norm() / (rest[a] - rest[b]).norm() - 1.0);
+            }
+        }
+        strains.iter().sum::<f64>() / strains.len().max(1) as f64
+    }
+
+    /// How far a test went: the effective shear angle (rad) where bars shear, else the mean relative change of distance
+    /// between the clips' centres.
+    pub(super) fn extension(&self, kind: Kind, specimen: &Specimen, x: &[f64]) -> f64 {
+        match kind {
+            Kind::Shear | Kind::ComplexShear => {
+                let held = || (0..self.group_of.len()).filter(|&node| self.group_of[node].is_some());
+                let material: Vec<_> = held().map(|node| specimen.mesh.material[node]).collect();
+                let now: Vec<_> =
+                    held().map(|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3])).collect();
+                effective_shear(&material, &now).map_or(0.0, f64::abs)
+            }
+            _ => self.separation(specimen, x),
+        }
+    }
+
+    /// The measured components of a frame's clip forces: along the load cell; along each bar's own axis in a picture
+    /// frame; else all of the plane's, or all three.
+    ///
+    /// * `weights` — what each clip weighs, with the cloth inside it, N
+    ///
+    /// Source of the rule for shear: Miguel et al. 2012, §5.1.
+    pub(super) fn forces(
+        &self,
+        sequence: &Sequence,
+        frame: &Frame,
+        specimen: &Specimen,
+        weights: &[Vector3<f64>],
+        planar: bool,
+    ) -> Vec<ForceComponent> {
+        let axes: Vec<Vector3<f64>> = (0..sequence.clips.len())
+            .map(|clip| specimen.turn(&(frame.poses[clip].rotation * long_axis(sequence, clip))))
+            .collect();
+        let mut components = Vec::new();
+        for (clip, weight) in weights.iter().enumerate() {
+            let Some(force) = frame.clip_force(clip) else { continue };
+            let force = specimen.turn(&force);
+            // A clip is in balance: cords + its weight = what the cloth pulls with.
+            let balanced = force + weight;
+            let directions = match (sequence.force_direction, sequence.kind) {
+                (Some(direction), _) => vec![specimen.turn(&direction)],
+                (None, Kind::Shear) => vec![axes[clip]],
+                (None, _) if planar => vec![Vector3::x(), Vector3::y()],
+                (None, _) => vec![Vector3::x(), Vector3::y(), Vector3::z()],
+            };
+            components.extend(directions.into_iter().enumerate().map(|(number, direction)| ForceComponent {
+                clip,
+                number,
+                direction,
+                parts: self.parts(clip, &direction, &axes),
+                force: balanced.dot(&direction),
+                measured: force.dot(&direction),
+            }));
+        }
+        components
+    }
+
+    /// A clip's force along a direction, as a sum over the groups that it holds.
+    ///
+    /// Nodes that two bars share pull each along its own axis: f = α t₁ + β t₂ + rest, and the first bar has α t₁ and half
+    /// of the rest. In homogeneous shear, where all traction is along the bars, that gives each its own side exactly.
+    fn parts(
+        &self,
+        clip: usize,
+        direction: &Vector3<f64>,
+        axes: &[Vector3<f64>],
+    ) -> Vec<(usize, Vector3<f64>)> {
+        let mut parts = vec![(clip, *direction)];
+        for (group, &[a, b]) in self.groups.iter().enumerate() {
+            if a == b || (a != clip && b != clip) {
+                continue;
+            }
+            let [own, other] = if a == clip { [axes[a], axes[b]] } else { [axes[b], axes[a]] };
+            let cosine = own.dot(&other);
+            let normal = own.cross(&other);
+            let share = if normal.norm() > 0.1 {
+                let dual = (own - other * cosine) / (1.0 - cosine * cosine);
+                let normal = normal.normalize();
+                dual * own.dot(direction) + normal * (0.5 * normal.dot(direction))
+            } else {
+                direction * 0.5
+            };
+            parts.push((group, share));
+        }
+        parts
+    }
+}
+
+/// Where a clip takes a rest point, in world coordinates.
+fn moved(frame: &Frame, clip: usize, rest: &Vector3<f64>) -> Vector3<f64> {
+    let pose = &frame.poses[clip];
+    pose.rotation * rest + pose.translation.vector
+}
+
+/// The principal axis of a clip's vertices at rest, in world coordinates.
+fn long_axis(sequence: &Sequence, clip: usize) -> Vector3<f64> {
+    let points = || sequence.clips[clip].vertices.iter().map(|&vertex| sequence.mesh.positions[vertex]);
+    let centre = points().sum::<Vector3<f64>>() / points().count() as f64;
+    let spread: Matrix3<f64> = points().map(|p| (p - centre) * (p - centre).transpose()).sum();
+    let eigen = spread.symmetric_eigen();
+    let axis = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
+    // Of the two directions the one whose largest coordinate is positive.
+    axis * axis[axis.iamax()].signum()
+}
