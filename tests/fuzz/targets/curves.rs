@@ -4,8 +4,8 @@
 
 #![no_main]
 
-use cloth_fit::material::check::context;
 use cloth_fit::judge::repair::repair;
+use cloth_fit::material::check::context;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::curve::soundness::{Finding, check};
 use cloth_sim::dynamics::{Motion, Settings, Status};
