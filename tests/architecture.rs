@@ -79,7 +79,7 @@ fn files(src: &Path) -> BTreeMap<Module, Taken> {
             if name == "tests" {
                 continue;
             }
-            let inner = || [&module[..], &[name.clone()]].concat();
+            let inner = || [&module[..], std::slice::from_ref(&name)].concat();
             if path.is_dir() {
                 walk(&path, &inner(), found);
             } else if path.extension().is_some_and(|ending| ending == "rs") && name != "main" {

@@ -194,7 +194,7 @@ fn doubt_known(report: &mut FitReport, known: &str, fabric: &str) {
     let names: BTreeSet<&String> = report.sequences().iter().map(|(_, sequence)| &sequence.name).collect();
     let notice = |name: &String| {
         Notice::doubt(
-            &name,
+            name,
             "--known",
             format!("curves of {known}, taken as exact"),
             format!("curves of {fabric}, which was measured"),

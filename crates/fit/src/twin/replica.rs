@@ -402,7 +402,7 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
     Err(Error::geometry(
         &sequence.name,
         format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
-        &format!(
+        format!(
             "cells at most 2.4 times as long as wide: nodes by the specimen's sides, as {columns}x{rows}"
         ),
     ))
