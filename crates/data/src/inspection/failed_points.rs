@@ -18,8 +18,10 @@ const NAMED: usize = 5;
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let surroundings = Surroundings::of(sequence);
     let mut lost = Lost::default();
+    let (mut measured, mut followed) = (0, 0);
     for (index, frame) in sequence.frames.iter_mut().enumerate() {
         let Some(positions) = &mut frame.positions else { continue };
+        measured += 1;
         let mut found = coincident(positions);
         lost.coincident += found.len();
         let left = surroundings.left_behind(positions, &found);
@@ -29,10 +31,19 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
         lost.torn += torn.len();
         found.extend(torn);
         found.iter().for_each(|&vertex| positions[vertex] = Vector3::repeat(f64::NAN));
+        followed += usize::from(positions.iter().any(is_seen));
         lost.points.extend(found.into_iter().map(|vertex| (index, vertex)));
     }
     if !lost.points.is_empty() {
         notices.push(lost.notice(&sequence.name));
+    }
+    if !lost.points.is_empty() && followed == 0 {
+        notices.push(Notice::doubt(
+            &sequence.name,
+            "positions.npy",
+            format!("no vertex that was followed in any of {measured} frames"),
+            "shapes, which show whether the clips stood where clips.csv has them; without positions.npy if there are none",
+        ));
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::frame::Frame;
 use crate::io::read_set;
 use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
@@ -368,6 +369,19 @@ fn points_that_were_not_followed_are_left_out_and_no_others() {
         assert!(text.contains(&format!("vertex {} in frame {}", failed[0].1, failed[0].0)), "{text}");
         assert_eq!(unobserved(&inspected), failed, "{said}");
     }
+}
+
+#[test]
+fn shapes_that_were_lost_in_every_frame_are_doubted() {
+    let fabric = fixture("cotton-denim").fabric;
+    let mut sequence = sequence_of("stretch-weft");
+    let lose = |frame: &mut Frame| frame.positions.iter_mut().flatten().for_each(|place| place.fill(0.0));
+    sequence.frames[1..].iter_mut().for_each(lose);
+    assert!(inspect_sequence(&fabric, &sequence).1.iter().all(|notice| notice.severity == Severity::Remark));
+    lose(&mut sequence.frames[0]);
+    let notices = inspect_sequence(&fabric, &sequence).1;
+    let doubt = notices.iter().find(|notice| notice.severity == Severity::Doubt).unwrap().to_string();
+    assert!(doubt.contains("positions.npy") && doubt.contains("no vertex that was followed"), "{doubt}");
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub struct Rig {
     pub cord_hysteresis: bool,
     /// The fabric's own hysteresis, by its `loading_ratio`; default off.
     pub fabric_hysteresis: bool,
-    /// Which sample of the fabric; the first, the default, is the fabric itself. See [`KnownFabric::sample`].
+    /// Which sample of the fabric; the first, the default, is the fabric itself. See [`super::KnownFabric::sample`].
     pub sample: usize,
     /// Seed of all noise; default 1.
     pub seed: u64,

@@ -12,7 +12,7 @@ pub trait Residuals {
     /// Evaluates at a point.
     ///
     /// Every trial point is evaluated once, with the Jacobian: after an equilibrium its factorisation is at hand and
-    /// serves the sensitivities too. Where the Jacobian is dear, see [`Options::jacobian_at_trials`].
+    /// serves the sensitivities too. Where the Jacobian is dear, see [`super::Options::jacobian_at_trials`].
     ///
     /// # Errors
     /// Ends the fit and is handed through.
