@@ -22,47 +22,47 @@ use std::io::Write;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "fit-cloth", version, arg_required_else_help = true)]
 pub struct Options {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
-    /// How to tell of it.
+    /// Output flags.
     #[command(flatten)]
     pub telling: Telling,
 }
 
-/// What to do.
+/// The commands.
 #[derive(Debug, Clone, Subcommand)]
 #[expect(clippy::large_enum_variant, reason = "there is one of them in a run")]
 pub enum Command {
-    /// Turn a laboratory's table into a sequence of a measurement set, or into a curve
+    /// Import a laboratory's table into a measurement set, or convert it into a curve
     Import(Import),
-    /// Measure a known cloth on a virtual rig: a measurement set to try a fit on
+    /// Measure a known fabric on a virtual rig and write a measurement set
     Rig(RigOptions),
-    /// Fit weft and warp stretch curves
+    /// Fit the stretch curves along weft and warp
     #[command(after_help = goal::STRETCH_EXAMPLE)]
     Stretch(FitFlags),
-    /// Fit the shear curve, after the stretch curves that it builds on
+    /// Fit the shear curve, after the stretch curves that it depends on
     #[command(after_help = goal::SHEAR_EXAMPLE)]
     Shear(FitFlags),
-    /// Fit the bending curves, after the stretch and shear curves that they build on
+    /// Fit the bending curves, after the stretch and shear curves that they depend on
     #[command(after_help = goal::BEND_EXAMPLE)]
     Bend(FitFlags),
-    /// Fit all curves that a set shows
+    /// Fit every curve that a set observes
     #[command(after_help = goal::FIT_EXAMPLE)]
     Fit(FitFlags),
-    /// Fit three models in four variants, and rank them
+    /// Fit three models in four variants and rank them
     Compare(CompareOptions),
-    /// Try fitted curves on motions and samples that the fit did not see
+    /// Test fitted curves on motions and samples that the fit did not use
     Validate(ValidateOptions),
-    /// Check that curves can be simulated, and repair those that cannot
+    /// Check curves for simulation and repair unsound ones
     Check(CheckOptions),
-    /// Edit a curve: make it wider, stronger, longer
+    /// Scale or extend a curve
     Curve(Curve),
-    /// Simulate a scene of a material: hang it, drape it, fly it
+    /// Simulate a scene with a material, in motion or at rest
     Simulate(SimulateOptions),
-    /// Study error against run time, and what each part of a scene saves and costs
+    /// Measure error against run time, and what each part of a scene saves and costs
     Study(StudyOptions),
-    /// Write the page of a fit or a comparison again
+    /// Rewrite the report page of a fit or a comparison
     Report(ReportOptions),
 }
 

@@ -9,14 +9,14 @@ use serde_json::Value;
 use std::io::Write;
 use std::path::Path;
 
-/// How results are told; every command has these flags.
+/// Output flags of every command.
 #[derive(Debug, Clone, Copy, Default, Args)]
 #[command(next_help_heading = "Output")]
 pub struct Telling {
     /// Print the result as one JSON object
     #[arg(long, global = true)]
     pub json: bool,
-    /// Print nothing but errors, and what --json asks for
+    /// Print errors only, and the JSON object of --json
     #[arg(short, long, global = true)]
     pub quiet: bool,
     /// Print every iteration

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// Its help.
 pub const EXAMPLE: &str = "\
-Exit code 0: sound. 3: FILE has a defect, also where --repair has written a sound curve: the code is about FILE.
+Exit code: 0 if FILE is sound, 3 if it has a defect, even when --repair has written a sound curve.
 
 Examples:
   fit-cloth check fixtures/curves/weft.csv
@@ -29,12 +29,12 @@ Examples:
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct CheckOptions {
-    /// A material.json, or a curve's table: strain,stress_n_per_m or curvature_per_m,moment_n
+    /// A material.json, or a table of one curve: strain,stress_n_per_m or curvature_per_m,moment_n
     pub file: PathBuf,
-    /// Write the nearest stable curves in the form of FILE
+    /// Write the nearest sound curves, in the format of FILE
     #[arg(long, value_name = "OUT")]
     pub repair: Option<PathBuf>,
-    /// How to read it.
+    /// Component and model.
     #[command(flatten)]
     pub reading: Reading,
 }

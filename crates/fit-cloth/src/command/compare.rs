@@ -22,25 +22,25 @@ Example:
   fit-cloth compare fixtures/cotton-denim --nodes 9x9 --out out/compared
   fit-cloth compare fixtures/cotton-denim --nodes 9x9 --leave-one-out --out out/left-out
 
-Writes compare.csv and compare.json, best first, and report.html with all models on the same plots. What ranks: the
-residual on sequences of kind complex-shear and corner-pull, which no fit sees; else that on sequences left out one at
-a time; else that of the fit.
-Stopped by Ctrl-C or otherwise, the same command goes on after the models and variants that were finished.";
+Writes compare.csv and compare.json, best first, and report.html with all models on the same plots. The ranking is by the
+residual on sequences of kind complex-shear and corner-pull, which no fit uses; else by that on sequences left out one at
+a time; else by that of the fit.
+An interrupted run resumes after the last finished model and variant.";
 
 /// `fit-cloth compare`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct CompareOptions {
-    /// On what, and where to.
+    /// Set, output folder, grid, threads.
     #[command(flatten)]
     pub on: SetFlags,
-    /// How to fit.
+    /// Control points and constraints.
     #[command(flatten)]
     pub how: CurveFlags,
-    /// Fit again without each sequence in turn, where others show its curves, and predict it
+    /// Leave out each sequence in turn, if others observe its curves, and predict it
     #[arg(long)]
     pub leave_one_out: bool,
-    /// Write no report.html
+    /// Write no report.html and no report.json
     #[arg(long)]
     pub no_report: bool,
 }

@@ -23,7 +23,7 @@ fit-cloth curve scale --help and fit-cloth curve extend --help explain every opt
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct Curve {
-    /// What to do with it.
+    /// The edit.
     #[command(subcommand)]
     pub edit: CurveEdit,
 }
@@ -33,7 +33,7 @@ pub struct Curve {
 pub enum CurveEdit {
     /// Multiply all strains, all stresses, or both
     Scale(ScaleOptions),
-    /// Let stress go on straight, from the last strain or from one before it
+    /// Extend a curve with a straight piece, from its last strain or an earlier one
     Extend(ExtendOptions),
 }
 

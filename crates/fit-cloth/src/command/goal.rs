@@ -12,7 +12,8 @@ Example:
   fit-cloth stretch fixtures/cotton-denim --out out/stretch
   fit-cloth stretch fixtures/cotton-denim --model all --nodes 13x13 --out out/models
 
-Writes material.json, curves/*.csv, residuals.csv, forces.csv and plots/*.svg; with --model all, a folder for each model.";
+Writes report.html, report.json, material.json, curves/*.csv, residuals.csv, forces.csv and plots/*.svg; with --model all,
+a folder for each model.";
 
 /// The example of `fit-cloth shear`.
 pub const SHEAR_EXAMPLE: &str = "\
@@ -20,16 +21,16 @@ Example:
   fit-cloth shear fixtures/cotton-denim --out out/shear
 
 Uses sequences of kind shear and stretch-bias; a set without either is refused.
-With --known FILE the stretch curves of a former fit are taken from its material.json.";
+With --known FILE, the stretch curves are taken from the material.json of a previous fit.";
 
 /// The example of `fit-cloth bend`.
 pub const BEND_EXAMPLE: &str = "\
 Example:
   fit-cloth bend fixtures/cotton-denim --out out/bend
 
-Uses sequences of kind bend-weft, bend-warp and bend-bias; of those that a set lacks the curve is not fitted, and a warning
-says so. A set without any of them is refused.
-With --known FILE the stretch and shear curves of a former fit are taken from its material.json.";
+Uses sequences of kind bend-weft, bend-warp and bend-bias. A curve without its sequence is not fitted, and a warning
+names it; a set without any of them is refused.
+With --known FILE, the stretch and shear curves are taken from the material.json of a previous fit.";
 
 /// The example of `fit-cloth fit`.
 pub const FIT_EXAMPLE: &str = "\
@@ -37,8 +38,8 @@ Example:
   fit-cloth fit fixtures/cotton-denim --out out/fit
   fit-cloth fit fixtures/cotton-denim --variant linear --robust --verbose --out out/linear
 
-Fits stretch, shear and bending in this order, then shear and bending once more. What a set lacks is not fitted, and a
-warning says so. Stopped by Ctrl-C or otherwise, the same command goes on after the curves that were finished.";
+Fits stretch, shear and bending in this order, then shear and bending once more. A curve that no sequence observes is not
+fitted, and a warning names it. An interrupted run resumes after the last finished curve.";
 
 /// What a command is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

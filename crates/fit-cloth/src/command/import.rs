@@ -24,7 +24,7 @@ fit-cloth import strip --help and fit-cloth import table --help explain every op
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct Import {
-    /// Which table.
+    /// The table.
     #[command(subcommand)]
     pub table: ImportTable,
 }
@@ -32,9 +32,9 @@ pub struct Import {
 /// The tables that can be imported.
 #[derive(Debug, Clone, Subcommand)]
 pub enum ImportTable {
-    /// A tensile machine's table: a strip pulled between two clamps
+    /// Import a tensile machine's table, of a strip pulled between two clamps, into a set
     Strip(StripOptions),
-    /// A strip's force over elongation, or a shear test's, as a stress-strain curve, without a fit
+    /// Convert force over elongation of a strip or a shear test into a stress-strain curve, without a fit
     Table(TableOptions),
 }
 

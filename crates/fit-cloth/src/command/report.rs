@@ -15,8 +15,8 @@ Example:
   fit-cloth fit fixtures/cotton-denim --out out/fit
   fit-cloth report out/fit
 
-Writes report.html anew from the report.json beside it, after an update of the program, say. Every fit and comparison
-writes both, but for --no-report.";
+Rewrites report.html from the report.json beside it, for instance after an update of the program. Every fit and comparison
+writes both, unless --no-report is given.";
 
 /// `fit-cloth report`.
 #[derive(Debug, Clone, Args)]

@@ -22,50 +22,49 @@ Example:
   fit-cloth rig --fabric wool-cotton --sequences stretch-weft,shear --cord-hysteresis --out sets/wool
   fit-cloth rig --fabric fixtures/fabrics/cotton-denim.toml --frames 40 --seed 7 --out sets/denim
 
-The set can be fitted at once: fit-cloth stretch sets/denim";
+To fit the set: fit-cloth stretch sets/denim";
 
 /// `fit-cloth rig`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct RigOptions {
-    /// A fabric that comes with the program (cotton-denim, cotton-satin, rayon-spandex-knit, wool-cotton), or
-    /// a file like fixtures/fabrics/cotton-denim.toml
+    /// A built-in fabric (cotton-denim, cotton-satin, rayon-spandex-knit, wool-cotton), or a file like
+    /// fixtures/fabrics/cotton-denim.toml
     #[arg(long)]
     pub fabric: String,
-    /// The measurement set to write; a set that the rig wrote there before is replaced
+    /// Folder of the measurement set to write; a previous set of the rig there is replaced
     #[arg(long)]
     pub out: PathBuf,
-    /// The tests to make [default: all]: bend-bias, bend-warp, bend-weft, complex-shear, corner-pull, shear,
+    /// Tests to simulate [default: all]: bend-bias, bend-warp, bend-weft, complex-shear, corner-pull, shear,
     /// stretch-warp, stretch-weft
     #[arg(long, value_delimiter = ',', value_parser = parse_test, hide_default_value = true,
         default_values_t = KINDS)]
     pub sequences: Vec<Kind>,
-    /// Which sample of the fabric: 1 is the fabric itself, in any other each curve is stiffer or softer as a
-    /// whole
+    /// Sample of the fabric: 1 is the fabric itself; in any other, each curve is scaled in stiffness
     #[arg(long, default_value_t = 1)]
     pub sample: usize,
-    /// Columns and rows of the simulation: finer than a fit's
+    /// Nodes of the simulation grid, columns x rows: finer than a fit's
     #[arg(long, default_value = "61x61", value_parser = parse_nodes)]
     pub nodes: [usize; 2],
-    /// Columns and rows of the measured mesh
+    /// Vertices of the measured mesh, columns x rows
     #[arg(long, default_value = "100x100", value_parser = parse_nodes)]
     pub measured: [usize; 2],
-    /// Frames of each loading, and of each unloading
+    /// Frames per loading, and per unloading
     #[arg(long, default_value_t = 12)]
     pub frames: usize,
-    /// Loadings and unloadings
+    /// Cycles of loading and unloading
     #[arg(long, default_value_t = 1)]
     pub cycles: usize,
-    /// Leave out the noise of the instruments (0.075 mm on vertices, 3 mN on force components)
+    /// Omit instrument noise (0.075 mm on vertices, 3 mN on force components)
     #[arg(long)]
     pub no_noise: bool,
-    /// Noise on the clips' poses too
+    /// Add noise to clip poses, too
     #[arg(long, conflicts_with = "no_noise")]
     pub clip_noise: bool,
-    /// Friction of the cords: forces 0.05 N larger on loading, smaller on unloading
+    /// Add friction of the cords: forces 0.05 N larger on loading, smaller on unloading
     #[arg(long)]
     pub cord_hysteresis: bool,
-    /// The fabric's own hysteresis: forces on loading are its loading_ratio times those on unloading
+    /// Add the fabric's own hysteresis: forces on loading are its loading_ratio times those on unloading
     #[arg(long)]
     pub fabric_hysteresis: bool,
     /// Seed of the noise

@@ -33,27 +33,27 @@ fit, or a TOML file: docs/formats.md.";
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct SimulateOptions {
-    /// The scene, a TOML file: a sheet, what holds it, the air, the solver
+    /// The scene, a TOML file: sheet, supports, air, solver
     pub scene: PathBuf,
-    /// What the sheet is made of
+    /// Material of the sheet: a material.json or a TOML file
     #[arg(long, value_name = "FILE")]
     pub material: PathBuf,
-    /// Where to write; a former result there is replaced [default: out/ and the scene's name]
+    /// Output folder; a previous result there is replaced [default: out/ and the scene's name]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Go straight to the shape at rest
+    /// Solve for the equilibrium instead of simulating motion
     #[arg(long, conflicts_with = "duration")]
     pub rest: bool,
-    /// In what form shapes are written: a file each, or one NumPy array
+    /// Format of shapes: one file per frame, or one NumPy array
     #[arg(long, value_enum, default_value_t = FormatChoice::Obj)]
     pub format: FormatChoice,
-    /// How long to simulate [default: as the scene says]
+    /// Simulated time [default: from the scene]
     #[arg(long, value_name = "SECONDS", value_parser = parse_duration)]
     pub duration: Option<f64>,
-    /// Simulate curves whose stiffness or tangent is not positive, too
+    /// Accept curves whose stiffness or tangent is not positive
     #[arg(long)]
     pub allow_unstable: bool,
-    /// What weft and warp do under compression [default: as the material says]
+    /// Weft and warp under compression [default: from the material]
     #[arg(long, value_enum)]
     pub compression: Option<CompressionChoice>,
 }

@@ -22,31 +22,31 @@ const EXAMPLE: &str = "\
 Example:
   fit-cloth study --quick --topics noise,ablation fixtures/cotton-denim --out out/study
 
-With all topics --quick takes about a minute, and the full study about ten.
+With all topics, --quick takes about a minute and the full study about ten.
 
-Writes study.md, study.csv (one row a run), ablation.csv (one row a part) and plots/*.svg. Errors are against the known
-curves where the set's fabric is one of the virtual rig's, else against the default fit on the finest grid. Times are of
-this machine, one run at a time: let it do nothing else meanwhile.";
+Writes study.md, study.csv (one row per run), ablation.csv (one row per part) and plots/*.svg. Errors are relative to the
+known curves if the set's fabric is one of the virtual rig's, else to the default fit on the finest grid. Runs are timed one
+at a time on this machine: leave it idle otherwise.";
 
 /// `fit-cloth study`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct StudyOptions {
-    /// The measurement set [default: cotton denim, measured on the virtual rig]
+    /// Folder of the measurement set [default: cotton denim, measured on the virtual rig]
     pub set: Option<PathBuf>,
-    /// Where to write; a former study there is replaced [default: out/ and the set's name with -study]
+    /// Output folder; a previous study there is replaced [default: out/ and the set's name with -study]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Coarser meshes and fewer runs
+    /// Use coarser meshes and fewer runs
     #[arg(long)]
     pub quick: bool,
-    /// Fit by the published method on every grid, not on the coarsest alone: it takes ten times as long or more
+    /// Use the published method on every grid, not only on the coarsest: at least ten times as long
     #[arg(long)]
     pub as_published: bool,
-    /// What to study [default: all]
+    /// Topics to study [default: all]
     #[arg(long, value_delimiter = ',', value_enum, hide_default_value = true, default_values_t = TopicChoice::ALL)]
     pub topics: Vec<TopicChoice>,
-    /// Threads [default: one a core]
+    /// Number of threads, 1 to 1024 [default: one per core]
     #[arg(long)]
     pub threads: Option<usize>,
 }

@@ -37,16 +37,16 @@ Writes validation.json, validation.csv, measures.csv, forces.csv and plots/*.svg
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct ValidateOptions {
-    /// On what, and where to.
+    /// Set, output folder, grid, threads.
     #[command(flatten)]
     pub on: SetFlags,
-    /// The material.json whose curves are tried
+    /// The material.json whose curves are tested
     #[arg(long, value_name = "FILE")]
     pub material: PathBuf,
-    /// The tests to try them on [default: complex-shear and corner-pull, which no fit uses; all, if a set has neither]
+    /// Kinds of test to use [default: complex-shear and corner-pull, which no fit uses; all, if a set has neither]
     #[arg(long, value_delimiter = ',', value_parser = parse_any_kind, value_name = "KIND")]
     pub kinds: Vec<Kind>,
-    /// Try them on all tests of the set
+    /// Use all tests of the set
     #[arg(long, conflicts_with = "kinds")]
     pub all: bool,
 }

@@ -1,4 +1,4 @@
-//! What can be chosen by name, and what the library calls it.
+//! Choices by name, and the library's types.
 
 use clap::ValueEnum;
 use cloth_fit::stage::{Constraints, Variant};
@@ -14,7 +14,7 @@ pub enum ModelChoice {
     SoftConstraint,
     /// Springs
     Springs,
-    /// One after the other
+    /// All three in turn
     All,
 }
 
@@ -30,16 +30,16 @@ impl ModelChoice {
     }
 }
 
-/// Which freedoms of a model are used.
+/// Model variants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum VariantChoice {
-    /// Nonlinear curves, weft and warp apart
+    /// Nonlinear curves, weft and warp separate
     Orthotropic,
-    /// Constant stiffness, weft and warp apart
+    /// Constant stiffness, weft and warp separate
     Linear,
-    /// Nonlinear curves, the same for weft and warp
+    /// Nonlinear curves, weft and warp shared
     Isotropic,
-    /// Constant stiffness, the same for weft and warp
+    /// Constant stiffness, weft and warp shared
     LinearIsotropic,
 }
 
@@ -54,12 +54,12 @@ impl From<VariantChoice> for Variant {
     }
 }
 
-/// What keeps a curve physical.
+/// Constraints on a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ConstraintChoice {
     /// Stress grows with strain everywhere
     Stable,
-    /// Control values are not negative: the published rule
+    /// No control value is negative: the published rule
     ControlPoints,
 }
 
@@ -72,12 +72,12 @@ impl From<ConstraintChoice> for Constraints {
     }
 }
 
-/// What weft and warp do under compression.
+/// Weft and warp under compression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum CompressionChoice {
-    /// Push back with the stiffness at zero strain
+    /// Stiffness as at zero strain
     ZeroStrain,
-    /// Bear tension only
+    /// Tension only
     None,
 }
 
@@ -103,7 +103,7 @@ pub enum ComponentChoice {
     BendWeft,
     /// Bending along warp
     BendWarp,
-    /// Bending along neither
+    /// Diagonal bending, along neither yarn
     BendDiagonal,
 }
 
@@ -120,7 +120,7 @@ pub enum TableModel {
     Stvk,
     /// Engineering strain, hinges
     SoftConstraint,
-    /// Engineering strain of springs
+    /// Engineering strain, springs
     Springs,
 }
 
@@ -139,7 +139,7 @@ pub enum TopicChoice {
     Fits,
     /// Curve error against noise
     Noise,
-    /// What parts save and cost; those of fits only with fits
+    /// What each part saves and costs; parts of fits only with topic fits
     Ablation,
 }
 

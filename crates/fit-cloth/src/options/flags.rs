@@ -12,66 +12,65 @@ use cloth_fit::stage::Settings;
 use cloth_sim::material::Model;
 use std::path::{Path, PathBuf};
 
-/// What every command on a measurement set can be told.
+/// Flags of every command on a measurement set.
 #[derive(Debug, Clone, Args)]
 pub struct SetFlags {
-    /// The measurement set
+    /// Folder of the measurement set
     pub set: PathBuf,
-    /// Where to write; a former result there is replaced [default: out/ and the set's name; compare and validate add
-    /// theirs]
+    /// Output folder; a previous result there is replaced [default: out/ and the set's name; compare and validate append
+    /// -compare and -validation]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Columns and rows of the simulation [default: as many cells as 25x25 nodes have, near square]
+    /// Nodes of the simulation grid, columns x rows [default: as many cells as 25x25 nodes have, near square]
     #[arg(long, value_parser = parse_nodes)]
     pub nodes: Option<[usize; 2]>,
-    /// Threads; the result is the same on any number [default: one a core]
+    /// Number of threads, 1 to 1024; results do not depend on it [default: one per core]
     #[arg(long)]
     pub threads: Option<usize>,
 }
 
-/// How curves are fitted.
+/// Flags of the curves' fit.
 #[derive(Debug, Clone, Args)]
 pub struct CurveFlags {
-    /// Most control points of a curve
+    /// Maximum number of control points of a curve
     #[arg(long, default_value_t = 5)]
     pub points: usize,
-    /// What keeps a curve physical: stable everywhere, or only control points that are not negative
+    /// Constraint on curves: stable everywhere, or only no negative control values
     #[arg(long, value_enum, default_value_t = ConstraintChoice::Stable)]
     pub constraints: ConstraintChoice,
-    /// What weft and warp do under compression: push back as at zero strain, or bear tension only
+    /// Weft and warp under compression: stiffness as at zero strain, or tension only
     #[arg(long, value_enum, default_value_t = CompressionChoice::ZeroStrain)]
     pub compression: CompressionChoice,
-    /// Let residuals above LIMIT times the noise count less; --robust alone means 3
+    /// Downweight residuals above LIMIT times the noise; --robust alone means 3
     #[arg(long, value_name = "LIMIT", num_args = 0..=1, require_equals = true, default_missing_value = "3")]
     pub robust: Option<f64>,
 }
 
-/// What every fit can be told.
+/// Flags of every fit.
 #[derive(Debug, Clone, Args)]
 pub struct FitFlags {
-    /// What every command on a set can be told.
+    /// Set, output folder, grid, threads.
     #[command(flatten)]
     pub on: SetFlags,
-    /// How curves are fitted.
+    /// Control points and constraints.
     #[command(flatten)]
     pub how: CurveFlags,
-    /// The cloth model
+    /// Cloth model
     #[arg(long, value_enum, default_value_t = ModelChoice::Stvk)]
     pub model: ModelChoice,
-    /// Nonlinear or constant stiffness; weft and warp apart or alike
+    /// Model variant: nonlinear or constant stiffness; weft and warp separate or shared
     #[arg(long, value_enum, default_value_t = VariantChoice::Orthotropic)]
     pub variant: VariantChoice,
-    /// Fit by the method of Miguel et al. 2012 as it was published, to check us against it: slower, and bending comes out
-    /// too stiff
+    /// Use the method of Miguel et al. 2012 as published, for comparison: slower, and bending comes out too stiff
     #[arg(long, conflicts_with_all = ["constraints", "robust"])]
     pub as_published: bool,
-    /// A material.json whose curves are taken as exact: what it has is not fitted, but for what the command is about
+    /// A material.json whose curves are taken as exact and not fitted, except those that the command is named after
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
-    /// Write no report.html
+    /// Write no report.html and no report.json
     #[arg(long)]
     pub no_report: bool,
-    /// Take curves from --known that are not stable, such as those of --constraints control-points
+    /// Accept unstable curves in --known, such as those of --constraints control-points
     #[arg(long, requires = "known")]
     pub allow_unstable: bool,
 }
@@ -82,7 +81,8 @@ impl SetFlags {
     /// * `suffix` — of that folder, if none was named: so that one command does not replace what another wrote
     ///
     /// # Errors
-    /// A bad set, or an output folder that is no former result or that another run writes; threads that cannot be.
+    /// A bad set; an output folder that is no previous result or that another run writes; a thread count outside 1 to
+    /// 1024.
     pub fn open(&self, suffix: &str) -> Result<(MeasurementSet, Output), Failure> {
         let folder = self.output_folder(suffix);
         use_threads(self.threads)?;
@@ -136,7 +136,7 @@ impl FitFlags {
 /// Limits the threads of the whole program.
 ///
 /// # Errors
-/// A number of threads that cannot be.
+/// Rejects thread counts outside 1 to 1024.
 pub(crate) fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let Some(threads) = threads else { return Ok(()) };
     let refused = |found: String| Error::Setting { field: "threads", found, expected: "1 to 1024".into() };

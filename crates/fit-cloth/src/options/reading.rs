@@ -4,15 +4,15 @@ use super::choice::{ComponentChoice, TableModel};
 use clap::Args;
 use cloth_sim::material::{Component, Model};
 
-/// How a table of one curve is to be read.
+/// How a table of one curve is read.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading")]
 pub struct Reading {
-    /// The curve's component: which of a material.json [check: all]; of a table only where rows lie below zero, which
-    /// stretch and shear read differently
+    /// Component of the curve: selects one of a material.json [check: all]; needed for a table only if it has rows below
+    /// zero, which stretch and shear read differently
     #[arg(long, value_enum)]
     pub component: Option<ComponentChoice>,
-    /// The model whose strains a table is over [default: as its columns say, else stvk]
+    /// Model whose strain measure the table uses [default: by its columns, else stvk]
     #[arg(long, value_enum)]
     pub model: Option<TableModel>,
 }

@@ -12,11 +12,11 @@ use std::io::Write;
 use std::path::PathBuf;
 
 const EXAMPLE: &str = "\
-In a simulation a curve goes on straight beyond its last point, with its last tangent: so does it here, unless a slope or \
-a stress at the end is given. With --from, what the curve has beyond that strain gives way to the straight piece.
+The straight piece continues with the last tangent, as a curve does in a simulation, unless --slope or --stress-at-end is \
+given. With --from, it replaces the curve beyond that strain.
 
 The edits of Strohkorb 2019, figure 9 (weft: a linear trend from half its range on, and twice the greatest stress) and \
-figure 10 (warp: strain steps 10 times as large, then the same), on curves of ours:
+figure 10 (warp: strain steps 10 times as large, then the same), applied to the fixtures:
 
 Examples:
   fit-cloth curve extend fixtures/curves/weft.csv --from 0.057 --to 0.1 \\
@@ -31,27 +31,27 @@ Examples:
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE, allow_negative_numbers = true)]
 pub struct ExtendOptions {
-    /// A curve's table, or a material.json (with --component)
+    /// A table of one curve, or a material.json (with --component)
     pub file: PathBuf,
     /// Strain (curvature) at which the straight piece ends
     #[arg(long, value_name = "STRAIN")]
     pub to: f64,
-    /// Strain (curvature) at which it begins [default: the curve's last]
+    /// Strain (curvature) at which the straight piece begins [default: the curve's last]
     #[arg(long, value_name = "STRAIN")]
     pub from: Option<f64>,
-    /// Its slope [default: the curve's tangent where the piece begins]
+    /// Slope of the straight piece [default: the curve's tangent where it begins]
     #[arg(long, value_name = "N_PER_M")]
     pub slope: Option<f64>,
-    /// Its stress (moment) at the end
+    /// Stress (moment) at the end of the straight piece
     #[arg(long, value_name = "STRESS", conflicts_with = "slope")]
     pub stress_at_end: Option<f64>,
-    /// How many points it adds [default: as near to each other as the curve's own are on the mean]
+    /// Number of points to add [default: at the mean spacing of the curve's points]
     #[arg(long, value_name = "COUNT")]
     pub points: Option<usize>,
-    /// Where to write, in the form of FILE
+    /// Output file, in the format of FILE
     #[arg(long, value_name = "OUT")]
     pub out: PathBuf,
-    /// How to read it.
+    /// Component and model.
     #[command(flatten)]
     pub reading: Reading,
 }

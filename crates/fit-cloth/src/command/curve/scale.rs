@@ -12,8 +12,8 @@ use std::io::Write;
 use std::path::PathBuf;
 
 const EXAMPLE: &str = "\
-Larger strain steps make a cloth softer, a greater last stress makes it stiffer. The edits of Strohkorb 2019, \
-figure 8 (weft steps 10 times as large, warp 200 times, shear 10 times) and figure 11 (shear's greatest stress \
+Larger strains make the cloth softer, larger stresses make it stiffer. The edits of Strohkorb 2019, \
+figure 8 (weft steps 10 times as large, warp 200 times, shear 10 times) and figure 11 (largest shear stress \
 raised from 60 to 100, all others in proportion; here from 16 to 27):
 
 Examples:
@@ -28,7 +28,7 @@ Examples:
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE, allow_negative_numbers = true)]
 pub struct ScaleOptions {
-    /// A curve's table, or a material.json (with --component)
+    /// A table of one curve, or a material.json (with --component)
     pub file: PathBuf,
     /// Multiply all strains (curvatures) by this
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
@@ -36,13 +36,13 @@ pub struct ScaleOptions {
     /// Multiply all stresses (moments) by this
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub stress: f64,
-    /// Multiply all stresses (moments) so that this is the largest, in N/m (N)
+    /// Scale all stresses (moments) so that the largest has this value, in N/m (N)
     #[arg(long, value_name = "STRESS", conflicts_with = "stress")]
     pub largest_stress: Option<f64>,
-    /// Where to write, in the form of FILE
+    /// Output file, in the format of FILE
     #[arg(long, value_name = "OUT")]
     pub out: PathBuf,
-    /// How to read it.
+    /// Component and model.
     #[command(flatten)]
     pub reading: Reading,
 }

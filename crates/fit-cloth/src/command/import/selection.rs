@@ -4,17 +4,17 @@ use clap::Args;
 use cloth_data::strip::{Column, Extension};
 use std::ops::RangeInclusive;
 
-/// The column that tells where the clamps were: one of three.
+/// The column of the extension: one of three.
 #[derive(Debug, Clone, Args)]
 #[group(required = true, multiple = false)]
 pub struct ExtensionOptions {
-    /// Column of the clamps' distance
+    /// Column of the clamp distance
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub separation: Option<Column>,
-    /// Column of the clamps' distance less the gauge length
+    /// Column of the clamp distance minus the gauge length
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub displacement: Option<Column>,
-    /// Column of the engineering strain: displacement by gauge length
+    /// Column of the engineering strain: displacement divided by gauge length
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub strain: Option<Column>,
 }

@@ -20,13 +20,13 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 const EXAMPLE: &str = "\
-A COLUMN is its name in the header, exactly. Its unit is the ending of that name (travel_mm, Load (N), \
-Strain [%]) or stands behind a colon (load:N); it is never guessed. Lengths: m, mm, cm, in. \
+COLUMN is the exact name in the header. The unit is the end of that name (travel_mm, Load (N), Strain [%]) or \
+follows a colon (load:N); a column without a unit is an error. Lengths: m, mm, cm, in. \
 Forces: N, kN, cN, mN, gf, kgf, lbf. Strains: 1, %.
 
-A strip is straight and free at the gauge length, and the load cell reads 0 there; where the table tells otherwise a \
-warning says so, and which of --free-length-m, --preload and --zero mends it. A machine that lengthens cannot be told \
-from a softer cloth: --compliance-m-per-n.
+The strip is assumed straight and free at the gauge length, where the load cell reads 0. If the table contradicts this, a \
+warning names the option that corrects it: --free-length-m, --preload or --zero. The compliance of the machine cannot be \
+told from the table; give it with --compliance-m-per-n.
 
 Example:
   fit-cloth import strip weft.csv --set cotton-knit --name cotton-knit \\
@@ -40,7 +40,7 @@ Example:
 pub struct StripOptions {
     /// The table: comma-separated values with a header
     pub file: PathBuf,
-    /// Folder of the measurement set; it is made if there is none
+    /// Folder of the measurement set; created if missing
     #[arg(long)]
     pub set: PathBuf,
     /// Name of the sequence [default: stretch-weft, -warp or -bias]
@@ -49,53 +49,53 @@ pub struct StripOptions {
     /// Replace a sequence of that name
     #[arg(long)]
     pub replace: bool,
-    /// Name of the fabric; a new set needs it
+    /// Name of the fabric; required for a new set
     #[arg(long)]
     pub name: Option<String>,
-    /// Mass per area; a new set needs it
+    /// Mass per area; required for a new set
     #[arg(long, value_name = "KG_M2")]
     pub areal_density_kg_m2: Option<f64>,
     /// Thickness of the fabric
     #[arg(long, value_name = "M")]
     pub thickness_m: Option<f64>,
-    /// Which way the strip was pulled
+    /// Direction of the pull
     #[arg(long)]
     pub direction: StripDirection,
-    /// Distance of the clamps at displacement 0, and at which the strip is straight and free
+    /// Clamp distance at displacement 0, at which the strip is straight and free
     #[arg(long, value_name = "M")]
     pub gauge_m: f64,
-    /// Distance of the clamps at which the strip is straight and free, if it was put in slack or under tension
+    /// Clamp distance at which the strip is straight and free, if it was mounted slack or under tension
     #[arg(long, value_name = "M", conflicts_with = "preload")]
     pub free_length_m: Option<f64>,
-    /// Find that distance: the first loading, from where it reaches this force, is followed down to zero
+    /// Find the free length: extrapolate the first loading to zero force, from where it reaches this force
     #[arg(long, value_name = "N")]
     pub preload: Option<f64>,
     /// Width of the strip
     #[arg(long, value_name = "M")]
     pub width_m: f64,
-    /// Where the clamps were.
+    /// Extension of the strip.
     #[command(flatten)]
     pub extension: ExtensionOptions,
     /// Column of the load cell's reading, positive in tension
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub force: Column,
-    /// Reading of the load cell with nothing in it; it is taken off every force
+    /// Reading of the unloaded load cell, subtracted from every force
     #[arg(long, value_name = "N", default_value_t = 0.0, allow_hyphen_values = true)]
     pub zero: f64,
-    /// How much machine and clamps lengthen by a newton; it is taken off the extension
+    /// Compliance of machine and clamps; their elongation is subtracted from the extension
     #[arg(long, value_name = "M_PER_N", default_value_t = 0.0, allow_hyphen_values = true)]
     pub compliance_m_per_n: f64,
-    /// Column of the branches' numbers [default: branch, if there; else a branch ends where the extension
-    /// turns back by more than 2 % of its range]
+    /// Column of the branch numbers [default: branch, if present; else a branch ends where the extension
+    /// reverses by more than 2 % of its range]
     #[arg(long, value_name = "COLUMN")]
     pub branch_column: Option<String>,
-    /// Branches to take, separated by commas [default: all]
+    /// Branches to use, separated by commas [default: all]
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
     pub branches: Option<Vec<usize>>,
-    /// Rows to look at, such as 3-90 or 3-, both ends included; 1 is the first below the header [default: all]
+    /// Rows to use, such as 3-90 or 3-, both ends included; 1 is the first below the header [default: all]
     #[arg(long, value_name = "FIRST-LAST", value_parser = rows)]
     pub rows: Option<RangeInclusive<usize>>,
-    /// Take every so many-th row of a branch
+    /// Use every COUNT-th row of a branch
     #[arg(long, value_name = "COUNT", default_value_t = 1)]
     pub every: usize,
     /// Standard deviation of the load cell
@@ -103,7 +103,7 @@ pub struct StripOptions {
     pub force_noise_n: Option<f64>,
 }
 
-/// Which way the strip was pulled.
+/// Direction of the pull.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum StripDirection {
     /// Along the weft yarns

@@ -17,8 +17,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 const EXAMPLE: &str = "\
-A COLUMN is its name in the header, exactly; its unit is the ending of that name (travel_mm, Load (N), Strain [%]) or \
-stands behind a colon (load:N). Rows must ascend: of a cyclic test take one loading with --rows.
+COLUMN is the exact name in the header; the unit is the end of that name (travel_mm, Load (N), Strain [%]) or follows a \
+colon (load:N). Rows must ascend: select one loading of a cyclic test with --rows.
 
 Example:
   fit-cloth import table fixtures/curves/pull.csv --width-m 0.05 --gauge-m 0.2 \\
@@ -30,33 +30,33 @@ Example:
 pub struct TableOptions {
     /// The table: comma-separated values with a header
     pub file: PathBuf,
-    /// Width of the strip at rest, across the pull; of a sheared sheet along the bars
+    /// Width of the strip at rest, across the pull; for a sheared sheet, along the bars
     #[arg(long, value_name = "M")]
     pub width_m: f64,
-    /// Distance of the clamps at rest; not needed with --strain
+    /// Clamp distance at rest; not needed with --strain
     #[arg(long, value_name = "M")]
     pub gauge_m: Option<f64>,
-    /// How far it was pulled, or the bars were shifted.
+    /// Extension of the strip, or shift of the bars.
     #[command(flatten)]
     pub extension: ExtensionOptions,
     /// Column of the load cell's reading
     #[arg(long, value_name = "COLUMN[:UNIT]", value_parser = column)]
     pub force: Column,
-    /// Rows to take, such as 3-90 or 3-, both ends included; 1 is the first below the header [default: all]
+    /// Rows to use, such as 3-90 or 3-, both ends included; 1 is the first below the header [default: all]
     #[arg(long, value_name = "FIRST-LAST", value_parser = rows)]
     pub rows: Option<RangeInclusive<usize>>,
-    /// Which strain and stress to write: that of the model that will read it
+    /// Strain and stress measure to write: that of the model that will read the curve
     #[arg(long, value_enum)]
     pub measure: MeasureChoice,
-    /// Tension per width across the bars of a shear tester; what it adds to the force is taken off
+    /// Tension per width across the bars of a shear tester; its contribution to the force is subtracted
     #[arg(long, value_name = "N_PER_M", default_value_t = 0.0)]
     pub tension_n_per_m: f64,
-    /// Where to write the curve
+    /// Output file for the curve
     #[arg(long, value_name = "OUT")]
     pub out: PathBuf,
 }
 
-/// Which strain and stress.
+/// Strain and stress measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MeasureChoice {
     /// Green strain, second Piola-Kirchhoff stress F/(w λ): model stvk
