@@ -83,7 +83,7 @@ fn published(study: &Study) -> Option<String> {
     let (default, published) = (of(Solver::Default)?, of(Solver::AsPublished)?);
     let [fast, slow] = [default, published].map(|run| run.spent);
     Some(format!(
-        "As published the fit with all points and frames on {0}x{0} nodes takes {1:.1} times as long and {2:.1} times as many factorisations; it ended: {3}.",
+        "The published method, with all points and frames on {0}x{0} nodes, takes {1:.1} times as long and {2:.1} times as many factorisations; it ended: {3}.",
         default.nodes,
         slow.seconds / fast.seconds,
         slow.counters.factorisations as f64 / fast.counters.factorisations.max(1) as f64,

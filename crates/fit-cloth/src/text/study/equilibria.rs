@@ -63,7 +63,7 @@ pub(super) fn meshes(study: &Study) -> Section {
     Section {
         title: "Equilibria on finer meshes".into(),
         words: format!(
-            "Root mean square distance of the nodes that all meshes share, and largest difference of a force, from {finest}x{finest} nodes of the same model. The order is that of the finest three meshes, from how they differ from each other: about 2 for the models on triangles, less where a corner is singular. Springs need not converge: their bending belongs to the grid. A flat strip and a flat picture frame are homogeneous, so that every mesh meets them exactly; they are left out."
+            "Root mean square distance of the nodes that all meshes share, and largest difference of a force, from {finest}x{finest} nodes of the same model. The order follows from the differences between the finest three meshes: about 2 for the models on triangles, less where a corner is singular. Springs need not converge: their bending depends on the grid. A flat strip and a flat picture frame are omitted: they are homogeneous, so every mesh solves them exactly."
         ),
         header: names,
         rows: ladders(study).iter().map(row).collect(),
@@ -108,7 +108,7 @@ pub(super) fn tolerances(study: &Study) -> Section {
     names.extend(scenes.iter().map(|scene| scene.to_string()));
     Section {
         title: format!("Tolerances of equilibria, stvk on {nodes}x{nodes} nodes"),
-        words: "Error of the places, and factorisations: a tolerance is tight enough where the error is that of the mesh."
+        words: "Error of the positions, and factorisations. A tolerance is tight enough where the error equals that of the mesh."
             .into(),
         header: names,
         rows: rows.iter().map(row).collect(),

@@ -32,7 +32,7 @@ pub(super) fn fits(study: &Study) -> Section {
     Section {
         title: "Fits: error against run time".into(),
         words: format!(
-            "Curve error: root mean square of force or moment per width over the range that was seen, over the largest there, against {}; then over all curves. Residuals are those of the measurements. On the front are the fits that no other beats in both error and time.",
+            "Curve error: root mean square error of force or moment per width over the observed range, as a share of the largest there, against {}; of a fit, the root mean square over all curves. Residuals are those of the measurements. The front holds the fits that no other beats in both error and time.",
             study.reference
         ),
         header: header(&[
@@ -90,7 +90,7 @@ pub(super) fn stages(study: &Study) -> Section {
     };
     Section {
         title: format!("Where the time goes: stvk on {most}x{most} nodes"),
-        words: "Seconds, factorisations and curve error of each stage in the order in which they run.".into(),
+        words: "Seconds, factorisations and curve error of each stage, in running order.".into(),
         header: header(&[
             "stage",
             "default, s",

@@ -18,7 +18,7 @@ pub(super) fn noise(study: &Study) -> Section {
     };
     Section {
         title: "Curve error against noise".into(),
-        words: "The floor is the Cramér–Rao bound: no unbiased estimate of the control points can do better. On the fit's own mesh, with a curve that it can represent, only noise errs, and the ratio is that of the estimator; the constraints may take it below 1 where the noise is large. On a finer mesh, with the fabric's curve, mesh and control points err too: where the ratio grows, less noise no longer helps.".into(),
+        words: "The floor is the Cramér–Rao bound: no unbiased estimate of the control points can do better. On the fit's own mesh, with a curve that it can represent, noise is the only error, and the ratio is that of the estimator; constraints may take it below 1 where the noise is large. On a finer mesh, with the fabric's curve, mesh and control points add errors: where the ratio grows, less noise no longer helps.".into(),
         header: header(&["curve", "noise", "seeds", "error", "floor", "error / floor"]),
         rows: levels(study).iter().map(row).collect(),
         plot: Some("noise"),

@@ -31,7 +31,7 @@ pub(super) fn parts(study: &Study) -> Section {
     };
     Section {
         title: "What each part saves and costs".into(),
-        words: "Each part with and without: what leaving it out saves, and by how much that changes forces, places or curves. Parts that a fit leaves out by default are put in for the comparison.".into(),
+        words: "Runs with and without each part: the time that leaving it out saves, and the change of forces, positions or curves. Parts that a fit leaves out by default are added for the comparison.".into(),
         header: header(&[
             "part",
             "where",
