@@ -17,8 +17,8 @@ use cloth_fit::judge::validation::validate;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::material::{Component, Curves, Model};
+use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use fit_cloth_tests::stress_error;
 use std::path::Path;
 

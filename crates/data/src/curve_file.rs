@@ -14,9 +14,9 @@ mod read;
 mod tests;
 
 use crate::error::{Error, Result};
-use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Model};
+use cloth_sim::strain_measure::StrainMeasure;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -25,111 +25,56 @@ const DISAGREEMENT: f64 = 0.01;
 /// Strains up to this share of the largest are zero: 201 equidistant rows from below zero meet it to rounding only.
 const ZERO: f64 = 1e-9;
 
-/// What a table is of, as its columns say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Stress (N/m) over strain, of stretch or shear, in the strain of the model that will read it.
-    Membrane,
-    /// Second Piola–Kirchhoff (PK2) stress per width (N/m) over Green strain: stretch of `stvk`.
-    Green,
-    /// Nominal stress per width (N/m) over engineering strain: stretch of the other models.
-    Engineering,
-    /// Shear stress (N/m) over w_u·w_v: shear of triangles.
-    Shear,
-    /// Stress (N/m) over the engineering strain of the cells' diagonals: shear of springs.
-    Diagonal,
-    /// Moment per width (N) over curvature (1/m).
-    Bending,
+/// What tables may be of, those first whose columns say the most; `None` = stretch or shear, in the strain of the model that
+/// will read it.
+const MEASURES: [Option<StrainMeasure>; 6] = [
+    Some(StrainMeasure::Hinge),
+    Some(StrainMeasure::Green),
+    Some(StrainMeasure::Engineering),
+    Some(StrainMeasure::Shear),
+    Some(StrainMeasure::Diagonal),
+    None,
+];
+
+/// Strain or curvature, secant stiffness, stress or moment, and the band's sides, as they head a file.
+pub fn columns(measure: Option<StrainMeasure>) -> [&'static str; 5] {
+    const K: &str = "stiffness_n_per_m";
+    match measure {
+        None => ["strain", K, "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
+        Some(StrainMeasure::Green) => {
+            ["green_strain", K, "pk2_stress_n_per_m", "pk2_stress_low_n_per_m", "pk2_stress_high_n_per_m"]
+        }
+        Some(StrainMeasure::Engineering) => {
+            [ENGINEERING[0], K, ENGINEERING[1], "nominal_stress_low_n_per_m", "nominal_stress_high_n_per_m"]
+        }
+        Some(StrainMeasure::Shear) => [
+            "shear_strain",
+            K,
+            "shear_stress_n_per_m",
+            "shear_stress_low_n_per_m",
+            "shear_stress_high_n_per_m",
+        ],
+        Some(StrainMeasure::Diagonal) => [
+            "diagonal_strain",
+            K,
+            "diagonal_stress_n_per_m",
+            "diagonal_stress_low_n_per_m",
+            "diagonal_stress_high_n_per_m",
+        ],
+        Some(StrainMeasure::Hinge | StrainMeasure::RingTwo) => {
+            ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"]
+        }
+    }
 }
 
-impl Kind {
-    /// All of them, those first whose columns say the most.
-    const ALL: [Self; 6] =
-        [Self::Bending, Self::Green, Self::Engineering, Self::Shear, Self::Diagonal, Self::Membrane];
-
-    /// Strain or curvature, secant stiffness, stress or moment, and the band's sides, as they head a file.
-    pub fn columns(self) -> [&'static str; 5] {
-        const K: &str = "stiffness_n_per_m";
-        match self {
-            Self::Membrane => ["strain", K, "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
-            Self::Green => {
-                ["green_strain", K, "pk2_stress_n_per_m", "pk2_stress_low_n_per_m", "pk2_stress_high_n_per_m"]
-            }
-            Self::Engineering => [
-                ENGINEERING[0],
-                K,
-                ENGINEERING[1],
-                "nominal_stress_low_n_per_m",
-                "nominal_stress_high_n_per_m",
-            ],
-            Self::Shear => [
-                "shear_strain",
-                K,
-                "shear_stress_n_per_m",
-                "shear_stress_low_n_per_m",
-                "shear_stress_high_n_per_m",
-            ],
-            Self::Diagonal => [
-                "diagonal_strain",
-                K,
-                "diagonal_stress_n_per_m",
-                "diagonal_stress_low_n_per_m",
-                "diagonal_stress_high_n_per_m",
-            ],
-            Self::Bending => ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"],
-        }
+/// Engineering strain and nominal stress of a row of Green strain and PK2 stress, √(1 + 2E) − 1 and S √(1 + 2E); `None` of
+/// other measures, which have no others beside their own, and where no length is left.
+pub fn engineering(measure: StrainMeasure, strain: f64, stress: f64) -> Option<[f64; 2]> {
+    if measure != StrainMeasure::Green {
+        return None;
     }
-
-    /// Strain and stress, or curvature and moment, in words.
-    pub fn names(self) -> [&'static str; 2] {
-        match self {
-            Self::Membrane => ["strain", "stress"],
-            Self::Green => ["Green strain", "PK2 stress"],
-            Self::Engineering => ["engineering strain", "nominal stress"],
-            Self::Shear => ["shear strain", "shear stress"],
-            Self::Diagonal => ["diagonal strain", "diagonal stress"],
-            Self::Bending => ["curvature", "moment per width"],
-        }
-    }
-
-    /// The kind of a component's table in a model.
-    pub fn of(component: Component, model: Model) -> Self {
-        match (component.is_bending(), component, model) {
-            (true, ..) => Self::Bending,
-            (false, Component::Shear, Model::Springs) => Self::Diagonal,
-            (false, Component::Shear, _) => Self::Shear,
-            (false, _, Model::Stvk) => Self::Green,
-            (false, ..) => Self::Engineering,
-        }
-    }
-
-    /// A component and a model that have such tables.
-    pub fn typical(self) -> (Component, Model) {
-        match self {
-            Self::Membrane | Self::Green => (Component::StretchWeft, Model::Stvk),
-            Self::Engineering => (Component::StretchWeft, Model::SoftConstraint),
-            Self::Shear => (Component::Shear, Model::Stvk),
-            Self::Diagonal => (Component::Shear, Model::Springs),
-            Self::Bending => (Component::BendWeft, Model::Stvk),
-        }
-    }
-
-    /// Engineering strain and nominal stress of a row of [`Kind::Green`], √(1 + 2E) − 1 and S √(1 + 2E); `None` of other
-    /// kinds, which have no others beside their own, and where no length is left.
-    pub fn engineering(self, strain: f64, stress: f64) -> Option<[f64; 2]> {
-        let square = 1.0 + 2.0 * strain;
-        let stretch = Some(square).filter(|square| self == Self::Green && *square > 0.0)?.sqrt();
-        // Without cancellation: (λ² − 1)/(λ + 1).
-        Some([2.0 * strain / (stretch + 1.0), stress * stretch])
-    }
-
-    /// Strain of the model's elements over what the first column holds.
-    fn strain_per_unit(self) -> f64 {
-        match self {
-            Self::Bending => HINGE_STRAIN_PER_CURVATURE,
-            _ => 1.0,
-        }
-    }
+    let extension = measure.physical(strain).filter(|extension| *extension > -1.0)?;
+    Some([extension, stress * (1.0 + 2.0 * strain).sqrt()])
 }
 
 /// Engineering strain and nominal stress, as they head a file.
@@ -138,8 +83,8 @@ pub const ENGINEERING: [&str; 2] = ["engineering_strain", "nominal_stress_n_per_
 /// A table of a curve, as it stands in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveFile {
-    /// Stretch and shear, or bending.
-    pub kind: Kind,
+    /// Whose strains the rows hold; `None` = of stretch or shear, in the strain of the model that will read it.
+    pub measure: Option<StrainMeasure>,
     /// Strains, or curvatures in 1/m; ascending.
     pub strains: Vec<f64>,
     /// Stresses in N/m, or moments per width in N; a row each.
@@ -160,14 +105,15 @@ impl CurveFile {
     /// # Errors
     /// No row; strains that do not ascend.
     pub fn new(
-        kind: Kind,
+        measure: Option<StrainMeasure>,
         strains: Vec<f64>,
         stresses: Vec<f64>,
         path: &Path,
         lines: Vec<usize>,
     ) -> Result<Self> {
         let band = [None, None];
-        let file = Self { kind, strains, stresses, stiffnesses: None, band, path: path.to_path_buf(), lines };
+        let file =
+            Self { measure, strains, stresses, stiffnesses: None, band, path: path.to_path_buf(), lines };
         file.check_order()?;
         Ok(file)
     }
@@ -183,7 +129,7 @@ impl CurveFile {
         let relation = if strains[row] == strains[row - 1] { "the same as" } else { "below" };
         let found = format!("{}, {relation} the row before", strains[row]);
         let expected = format!("above {}: rows in ascending order, each once", strains[row - 1]);
-        Err(self.refuse(Some(row), self.kind.columns()[0], found, expected))
+        Err(self.refuse(Some(row), columns(self.measure)[0], found, expected))
     }
 
     /// The curve of a component in a model, with a control point at every row from zero on.
@@ -203,8 +149,8 @@ impl CurveFile {
         negative: NegativeStrain,
     ) -> Result<StiffnessCurve> {
         self.check_component(component, model)?;
-        let [axis, stiffness, stress, ..] = self.kind.columns();
-        let scale = self.kind.strain_per_unit();
+        let [axis, stiffness, stress, ..] = columns(self.measure);
+        let scale = self.strain_per_unit();
         let zero = ZERO * self.largest_strain();
         let first = self.strains.partition_point(|&strain| strain <= zero);
         let below = self.strains.partition_point(|&strain| strain < -zero);
@@ -269,7 +215,7 @@ impl CurveFile {
     /// Without a stiffness column one is added: the stress alone does not tell the stiffness at zero, and the file would
     /// be read as another curve.
     pub fn with_curve(&self, curve: &StiffnessCurve) -> Self {
-        let scale = self.kind.strain_per_unit();
+        let scale = self.strain_per_unit();
         let stress: Vec<f64> = self.strains.iter().map(|&strain| curve.stress(scale * strain)).collect();
         let stiffness = |(&strain, stress): (&f64, &f64)| match curve
             .strains()
@@ -306,7 +252,7 @@ impl CurveFile {
     /// A row for every control point of another curve, below the rows of this one that lie below zero; without a band,
     /// which is known of this one's rows only.
     pub fn with_points(&self, curve: &StiffnessCurve) -> Self {
-        let scale = self.kind.strain_per_unit();
+        let scale = self.strain_per_unit();
         let zero = ZERO * self.largest_strain();
         let below = self.strains.iter().take_while(|&&strain| strain < -zero);
         let points = curve.strains().iter().map(|strain| strain / scale);
@@ -317,12 +263,12 @@ impl CurveFile {
 
     /// Strain of the model's elements over what the first column holds: 1, or 3 for curvature.
     pub fn strain_per_unit(&self) -> f64 {
-        self.kind.strain_per_unit()
+        self.measure.map_or(1.0, StrainMeasure::strain_per_unit)
     }
 
     /// The file's text, with the columns that are there; beside Green strain engineering strain and nominal stress.
     pub fn to_csv(&self) -> String {
-        let [axis, stiffness, stress, low, high] = self.kind.columns();
+        let [axis, stiffness, stress, low, high] = columns(self.measure);
         let [strains, stresses] = self.engineering();
         let columns: Vec<(&str, &[f64])> = [
             (axis, Some(&self.strains)),
@@ -351,24 +297,36 @@ impl CurveFile {
     /// The columns beside Green strain and its stress.
     fn engineering(&self) -> [Option<Vec<f64>>; 2] {
         let rows = self.strains.iter().zip(&self.stresses);
-        let rows: Option<Vec<_>> = rows.map(|(&e, &s)| self.kind.engineering(e, s)).collect();
+        let rows: Option<Vec<_>> = rows.map(|(&e, &s)| engineering(self.measure?, e, s)).collect();
         [0, 1].map(|column| rows.as_ref().map(|rows| rows.iter().map(|row| row[column]).collect()))
     }
 
     /// Refuses columns beside Green strain that say something else than it does.
-    fn check_beside(&self, columns: [Option<Vec<f64>>; 2]) -> Result<()> {
-        for ((given, own), name) in columns.iter().zip(self.engineering()).zip(ENGINEERING) {
+    fn check_beside(&self, given: [Option<Vec<f64>>; 2]) -> Result<()> {
+        for ((given, own), name) in given.iter().zip(self.engineering()).zip(ENGINEERING) {
             let (Some(given), Some(own)) = (given, own) else { continue };
             let largest = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
             let differs = |row: &usize| !((given[*row] - own[*row]).abs() <= 1e-6 * largest);
             if let Some(row) = (0..own.len()).find(differs) {
-                let [axis, _, stress, ..] = self.kind.columns();
+                let [axis, _, stress, ..] = columns(self.measure);
                 let expected =
                     format!("{}, from {axis} and {stress} (leave the column out after an edit)", own[row]);
                 return Err(self.refuse(Some(row), name, given[row].to_string(), expected));
             }
         }
         Ok(())
+    }
+
+    /// A component and a model that have such tables.
+    pub fn typical(&self) -> (Component, Model) {
+        match self.measure {
+            None | Some(StrainMeasure::Green) => (Component::StretchWeft, Model::Stvk),
+            Some(StrainMeasure::Engineering) => (Component::StretchWeft, Model::SoftConstraint),
+            Some(StrainMeasure::Shear) => (Component::Shear, Model::Stvk),
+            Some(StrainMeasure::Diagonal) => (Component::Shear, Model::Springs),
+            Some(StrainMeasure::Hinge) => (Component::BendWeft, Model::Stvk),
+            Some(StrainMeasure::RingTwo) => (Component::BendWeft, Model::Springs),
+        }
     }
 
     /// True if a row lies below zero.
@@ -385,14 +343,19 @@ impl CurveFile {
     }
 
     fn check_component(&self, component: Component, model: Model) -> Result<()> {
-        let wanted = Kind::of(component, model);
-        if self.kind != wanted && (self.kind != Kind::Membrane || wanted == Kind::Bending) {
-            let [axis, _, stress, ..] = wanted.columns();
-            let [found, ..] = self.kind.columns();
+        let wanted = model.strain_measure(component);
+        let agrees = match (self.measure, wanted) {
+            (None, _) => !component.is_bending(),
+            (Some(StrainMeasure::Hinge), StrainMeasure::RingTwo) => true,
+            (Some(measure), wanted) => measure == wanted,
+        };
+        if !agrees {
+            let [axis, _, stress, ..] = columns(Some(wanted));
+            let [found, ..] = columns(self.measure);
             let expected = format!("{axis} and {stress}, as {component} of {model} has");
             return Err(self.refuse(None, "header", format!("a column {found}"), expected));
         }
-        if component.is_bending() && model == Model::Springs {
+        if wanted == StrainMeasure::RingTwo {
             return Err(self.refuse(
                 None,
                 "model",
@@ -407,7 +370,7 @@ impl CurveFile {
     fn stated(&self, row: usize, stiffness: f64, largest: f64) -> Result<f64> {
         let product = stiffness * self.strains[row];
         if !((product - self.stresses[row]).abs() <= 1e-6 * largest) {
-            let [axis, column, stress, ..] = self.kind.columns();
+            let [axis, column, stress, ..] = columns(self.measure);
             let found = format!("{stiffness}, which times {axis} is {product}");
             let expected = format!("{stress} {} (leave the column out after an edit)", self.stresses[row]);
             return Err(self.refuse(Some(row), column, found, expected));
@@ -416,9 +379,9 @@ impl CurveFile {
     }
 
     fn check_below_zero(&self, curve: &StiffnessCurve, below: usize, largest: f64) -> Result<()> {
-        let [_, _, stress, ..] = self.kind.columns();
+        let [_, _, stress, ..] = columns(self.measure);
         for row in 0..below {
-            let expected = curve.stress(self.kind.strain_per_unit() * self.strains[row]);
+            let expected = curve.stress(self.strain_per_unit() * self.strains[row]);
             if !((self.stresses[row] - expected).abs() <= DISAGREEMENT * largest) {
                 let found = format!("{} at {}", self.stresses[row], self.strains[row]);
                 let rule = match curve.negative() {

@@ -1,6 +1,6 @@
 //! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
 
-use cloth_data::curve_file::{CurveFile, Kind};
+use cloth_data::curve_file::{CurveFile, columns};
 use cloth_data::error::{Error, Result};
 use cloth_fit::material::check::context;
 use cloth_fit::material::file::MaterialFile;
@@ -60,20 +60,21 @@ pub fn read(
         return read_material(path, component);
     }
     let file = CurveFile::read(path)?;
-    let component = match (component, file.kind) {
+    let component = match (component, file.measure) {
         (Some(component), _) => component,
-        (None, Kind::Membrane) if file.is_two_sided() => {
+        (None, None) if file.is_two_sided() => {
             let expected = "--component, since stretch and shear read rows below zero differently";
-            return Err(Error::input(path, None, file.kind.columns()[0], "rows below zero", expected));
+            return Err(Error::input(path, None, columns(file.measure)[0], "rows below zero", expected));
         }
-        (None, kind) => kind.typical().0,
+        (None, _) => file.typical().0,
     };
-    let model = model.unwrap_or(file.kind.typical().1);
+    let model = model.unwrap_or(file.typical().1);
     let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let (axis, unit) = match file.kind {
-        Kind::Bending => ("curvature [1/m]", "N"),
-        kind => (kind.names()[0], "N/m"),
+    let (axis, unit) = match file.measure {
+        None => ("strain", "N/m"),
+        Some(measure) if measure.is_per_metre() => ("curvature [1/m]", "N"),
+        Some(measure) => (measure.names()[0], "N/m"),
     };
     let context = context(model, component, None);
     let subject =
@@ -87,7 +88,7 @@ fn read_material(path: &Path, wanted: Option<Component>) -> Result<(Source, Vec<
     let components = curves.components().filter(|component| wanted.is_none_or(|wanted| wanted == *component));
     let subjects: Vec<Subject> = components
         .filter_map(|component| {
-            let hinges = component.is_bending() && file.model != Model::Springs;
+            let hinges = file.model.strain_measure(component).is_per_metre();
             Some(Subject {
                 component,
                 name: component.to_string(),

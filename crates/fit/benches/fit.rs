@@ -243,7 +243,8 @@ fn compare(ours: &FitReport, theirs: &FitReport) {
         let largest = stage.curve.samples.last().map_or(0.0, |sample| sample.stress);
         let own = &stage.curve.curve;
         // Bending: what is a curvature in the file is three times that to a hinge.
-        let unit = if component.is_bending() { cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
+        let unit =
+            if component.is_bending() { cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
         let (mut apart, mut bands): (f64, f64) = (0.0, 0.0);
         for sample in &stage.curve.samples {
             let strain = unit * sample.strain;

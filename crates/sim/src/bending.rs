@@ -2,12 +2,14 @@
 
 mod discrete_shell;
 
-pub use discrete_shell::{HINGE_STRAIN_PER_CURVATURE, Hinge};
+pub use discrete_shell::Hinge;
 
+use crate::element::Pass;
 use crate::error::Result;
 use crate::material::{Component, Model};
 use crate::membrane::{Spring, ring_two};
 use crate::mesh::Mesh;
+use crate::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 
 /// The bending elements.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +63,14 @@ impl Rolled {
 }
 
 impl Bending {
+    /// A pass over the elements.
+    pub(crate) fn visit(&self, pass: &mut impl Pass) {
+        match self {
+            Self::Springs(elements) => pass.visit::<2, 3, 1, _>(1, elements),
+            Self::DiscreteShells(elements) => pass.visit::<4, 3, 1, _>(1, elements),
+        }
+    }
+
     /// What a component's elements are to a rolled sheet; `None` if there are none.
     pub fn rolled(&self, component: Component) -> Option<Rolled> {
         match self {

@@ -465,20 +465,11 @@ impl ForceScale {
     }
 }
 
-/// The one place where models meet the loops over their elements.
+/// The one place where the parts of a problem meet the loops over their elements.
 fn visit(membrane: &Membrane, bending: Option<&Bending>, planar: bool, pass: &mut impl Pass) {
-    match (membrane, planar) {
-        (Membrane::Springs(elements), true) => pass.visit::<2, 2, 1, _>(0, elements),
-        (Membrane::Springs(elements), false) => pass.visit::<2, 3, 1, _>(0, elements),
-        (Membrane::SoftConstraint(elements), true) => pass.visit::<3, 2, 3, _>(0, elements),
-        (Membrane::SoftConstraint(elements), false) => pass.visit::<3, 3, 3, _>(0, elements),
-        (Membrane::Stvk(elements), true) => pass.visit::<3, 2, 3, _>(0, elements),
-        (Membrane::Stvk(elements), false) => pass.visit::<3, 3, 3, _>(0, elements),
-    }
-    match bending {
-        Some(Bending::Springs(elements)) => pass.visit::<2, 3, 1, _>(1, elements),
-        Some(Bending::DiscreteShells(elements)) => pass.visit::<4, 3, 1, _>(1, elements),
-        None => {}
+    membrane.visit(planar, pass);
+    if let Some(bending) = bending {
+        bending.visit(pass);
     }
 }
 

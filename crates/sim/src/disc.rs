@@ -109,9 +109,10 @@ fn band(ring: usize) -> Vec<[usize; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bending::{HINGE_STRAIN_PER_CURVATURE, Hinge};
+    use crate::bending::Hinge;
     use crate::element::{Element, gather};
     use crate::samples::rolled;
+    use crate::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 
     #[test]
     fn a_disc_has_its_rings_and_nearly_its_area() {

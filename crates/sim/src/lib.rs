@@ -27,6 +27,7 @@
 //! | [`mesh::Grid`], [`mesh::Mesh`] | the sheet at rest, checked |
 //! | [`curve::StiffnessCurve`], [`material::Curves`] | stiffness against strain, one a component |
 //! | [`element::Element`] | strains of one element and their derivatives |
+//! | [`strain_measure::StrainMeasure`] | a model's strain of a component, and its physical measure |
 //! | [`law::Law`] | from the strains of one element to energy, stresses and tangent |
 //! | [`membrane::Membrane`], [`bending::Bending`] | the elements of a mesh |
 //! | [`load::Held`] | nodes that clips or tables hold |
@@ -87,6 +88,7 @@ pub mod mesh;
 pub mod rigid;
 pub mod samples;
 mod sequence;
+pub mod strain_measure;
 
 /// The example there is run, too.
 #[cfg(doctest)]

@@ -1,6 +1,7 @@
 //! Which model, which curves: all that a simulator must know of a fabric, and nothing of any mesh.
 
 use crate::curve::{NegativeStrain, StiffnessCurve};
+use crate::strain_measure::StrainMeasure;
 use serde::{Deserialize, Serialize};
 
 /// A complete cloth model: a membrane and the bending that goes with it (Miguel et al. 2012, §6).
@@ -19,24 +20,61 @@ impl Model {
     /// All models.
     pub const ALL: [Self; 3] = [Self::Stvk, Self::SoftConstraint, Self::Springs];
 
+    /// True if its elements are springs, which need a regular grid; else they are triangles and hinges, of any mesh.
+    pub fn is_of_springs(self) -> bool {
+        match self {
+            Self::Springs => true,
+            Self::Stvk | Self::SoftConstraint => false,
+        }
+    }
+
+    /// The strain measure of a component.
+    pub fn strain_measure(self, component: Component) -> StrainMeasure {
+        use Component::{BendDiagonal, BendWarp, BendWeft, Shear, StretchWarp, StretchWeft};
+        match (component, self) {
+            (StretchWeft | StretchWarp, Self::Stvk) => StrainMeasure::Green,
+            (StretchWeft | StretchWarp, Self::SoftConstraint | Self::Springs) => StrainMeasure::Engineering,
+            (Shear, Self::Stvk | Self::SoftConstraint) => StrainMeasure::Shear,
+            (Shear, Self::Springs) => StrainMeasure::Diagonal,
+            (BendWeft | BendWarp | BendDiagonal, Self::Stvk | Self::SoftConstraint) => StrainMeasure::Hinge,
+            (BendWeft | BendWarp | BendDiagonal, Self::Springs) => StrainMeasure::RingTwo,
+        }
+    }
+
     /// How a component's curve is read at negative strain.
     pub fn negative_strain(self, component: Component, compression: Compression) -> NegativeStrain {
-        match (component.is_stretch(), compression, self) {
-            (false, ..) => NegativeStrain::Odd,
-            (true, Compression::None, _) => NegativeStrain::Slack,
-            (true, Compression::ZeroStrain, Self::Stvk) => NegativeStrain::Green,
-            (true, Compression::ZeroStrain, _) => NegativeStrain::Linear,
+        match (component.is_stretch(), compression) {
+            (false, _) => NegativeStrain::Odd,
+            (true, Compression::None) => NegativeStrain::Slack,
+            (true, Compression::ZeroStrain) => match self.strain_measure(component) {
+                StrainMeasure::Green => NegativeStrain::Green,
+                _ => NegativeStrain::Linear,
+            },
+        }
+    }
+
+    /// The name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stvk => "stvk",
+            Self::SoftConstraint => "soft-constraint",
+            Self::Springs => "springs",
+        }
+    }
+
+    /// Membrane and bending in a few words.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Stvk => "Diagonalised StVK, discrete shells",
+            Self::SoftConstraint => "Soft constraints, discrete shells",
+            Self::Springs => "Springs",
         }
     }
 }
 
 impl std::fmt::Display for Model {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(match self {
-            Self::Stvk => "stvk",
-            Self::SoftConstraint => "soft-constraint",
-            Self::Springs => "springs",
-        })
+        f.pad(self.name())
     }
 }
 

@@ -11,6 +11,7 @@ pub use spring::{Spring, ring_one, ring_two};
 pub use stvk::StvkTriangle;
 pub use triangle::Triangle;
 
+use crate::element::Pass;
 use crate::error::Result;
 use crate::material::{Component, Model};
 use crate::mesh::Mesh;
@@ -38,5 +39,17 @@ impl Membrane {
             Model::SoftConstraint => Self::SoftConstraint(triangles().map(SoftTriangle).collect()),
             Model::Stvk => Self::Stvk(triangles().map(StvkTriangle).collect()),
         })
+    }
+
+    /// A pass over the elements, in the plane or in space.
+    pub(crate) fn visit(&self, planar: bool, pass: &mut impl Pass) {
+        match (self, planar) {
+            (Self::Springs(elements), true) => pass.visit::<2, 2, 1, _>(0, elements),
+            (Self::Springs(elements), false) => pass.visit::<2, 3, 1, _>(0, elements),
+            (Self::SoftConstraint(elements), true) => pass.visit::<3, 2, 3, _>(0, elements),
+            (Self::SoftConstraint(elements), false) => pass.visit::<3, 3, 3, _>(0, elements),
+            (Self::Stvk(elements), true) => pass.visit::<3, 2, 3, _>(0, elements),
+            (Self::Stvk(elements), false) => pass.visit::<3, 3, 3, _>(0, elements),
+        }
     }
 }

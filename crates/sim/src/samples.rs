@@ -191,10 +191,8 @@ pub fn strip(model: Model, diagonals: Diagonals, stiffness: f64, stretch: f64) -
     let mut sample = Sample { planar: true, ..Sample::at_rest(mesh, model, curves) };
     sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.999 * SIDE).then_some(1) });
     sample.place(|p| Vector3::new(stretch * p.x, p.y, p.z));
-    let nominal_stress = match model {
-        Model::Stvk => stretch * stiffness * 0.5 * (stretch * stretch - 1.0),
-        Model::SoftConstraint | Model::Springs => stiffness * (stretch - 1.0),
-    };
+    let measure = model.strain_measure(Component::StretchWeft);
+    let nominal_stress = measure.load(stretch - 1.0, |strain| stiffness * strain).unwrap_or(f64::NAN);
     Ok((sample, 0.04 * nominal_stress))
 }
 
@@ -207,7 +205,7 @@ pub fn strip(model: Model, diagonals: Diagonals, stiffness: f64, stretch: f64) -
 /// A stiffness that is not finite.
 pub fn patch(model: Model, map: Matrix3x2<f64>) -> Result<Sample> {
     let mut mesh = square(7, Diagonals::Alternating)?;
-    if model != Model::Springs {
+    if !model.is_of_springs() {
         let inside = |c: f64| c > 0.0 && c < 0.999 * SIDE;
         for node in 0..mesh.len() {
             let m = mesh.material[node];

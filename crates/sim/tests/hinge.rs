@@ -6,7 +6,7 @@
 //!             passes  1e-14 rad; D/k = 3, 9, 3 on '/' grids, 3, 3.75, 4.5 on alternating ones, to 0.1 %
 //! ```
 
-use cloth_sim::bending::{Bending, HINGE_STRAIN_PER_CURVATURE, Hinge};
+use cloth_sim::bending::{Bending, Hinge};
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::element::{Element, Point, gather};
@@ -16,6 +16,7 @@ use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::membrane::{Spring, ring_two};
 use cloth_sim::mesh::{Diagonals, Mesh};
 use cloth_sim::samples::{self, SIDE, rolled};
+use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 

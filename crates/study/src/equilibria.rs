@@ -62,7 +62,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
 
 /// Springs do not resist the first bend: pressed together as in a picture frame, their sheet has no shape to converge to.
 fn suits(scene: &Scene, model: Model) -> bool {
-    model != Model::Springs || scene.set.sequences[0].kind != Kind::Shear
+    !model.is_of_springs() || scene.set.sequences[0].kind != Kind::Shear
 }
 
 fn settings(model: Model, solver: Solver, nodes: usize, tolerance: Option<Tolerance>) -> Settings {

@@ -1,19 +1,20 @@
 //! Curves in physical terms. The models' strains differ, so what is compared is what a laboratory would measure.
 //!
 //! ```text
-//! stretch   P(λ − 1)   force per rest width of a strip                P = λ σ(ε) (stvk), σ(ε) (others)
-//! shear     S(γ)       force along a bar per length, picture frame    S = σ(sin γ);  springs: below
-//! bending   M(κ)       moment per width of a rolled sheet             M = lever · σ(ε)
-//!
-//! springs   S cos γ = dW/dγ,   W = ½ W_c(ε₊) + ½ W_c(ε₋),   ε± = √(1 ± sin γ) − 1      both diagonals of square cells
+//! stretch   P(λ − 1)   force per rest width of a strip
+//! shear     S(γ)       force along a bar per length, picture frame
+//! bending   M(κ)       moment per width of a rolled sheet
 //! ```
+//!
+//! See [`StrainMeasure`](cloth_sim::strain_measure::StrainMeasure); places are its physical measures.
 
 use cloth_fit::stage::report::StageReport;
-use cloth_sim::bending::{Bending, HINGE_STRAIN_PER_CURVATURE, Rolled};
+use cloth_sim::bending::{Bending, Rolled};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::error::Result;
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::Mesh;
+use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 
 /// Curves over the strains of a model with triangles, against which others are measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,58 +25,11 @@ pub(crate) struct Reference {
     pub(crate) curves: Curves,
 }
 
-/// How a model's membrane strain and stress are what is measured.
-#[derive(Clone, Copy)]
-struct Measure {
-    model: Model,
-    component: Component,
-}
-
-impl Measure {
-    /// Relative change of length, or shear angle in rad, at a strain of zero or more.
-    fn place(self, strain: f64) -> f64 {
-        match (self.component.is_stretch(), self.model) {
-            (true, Model::Stvk) => (1.0 + 2.0 * strain).sqrt() - 1.0,
-            (true, _) => strain,
-            (false, Model::Springs) => ((1.0 + strain).powi(2) - 1.0).clamp(-1.0, 1.0).asin(),
-            (false, _) => strain.clamp(-1.0, 1.0).asin(),
-        }
-    }
-
-    fn strain(self, place: f64) -> f64 {
-        match (self.component.is_stretch(), self.model) {
-            (true, Model::Stvk) => 0.5 * ((1.0 + place).powi(2) - 1.0),
-            (true, _) => place,
-            (false, Model::Springs) => (1.0 + place.sin()).sqrt() - 1.0,
-            (false, _) => place.sin(),
-        }
-    }
-
-    /// Force per length at a place, N/m.
-    fn load(self, place: f64, stress: impl Fn(f64) -> f64) -> f64 {
-        match (self.component.is_stretch(), self.model) {
-            (true, Model::Stvk) => (1.0 + place) * stress(self.strain(place)),
-            (false, Model::Springs) => {
-                let along = |sine: f64| {
-                    let stretch = (1.0 + sine).sqrt();
-                    0.25 * stress(stretch - 1.0) / stretch
-                };
-                along(place.sin()) - along(-place.sin())
-            }
-            _ => stress(self.strain(place)),
-        }
-    }
-}
-
 impl Reference {
     /// Force or moment per length at an extension, shear angle or curvature, N/m or N; `None` without a curve.
     pub(crate) fn load(&self, component: Component, place: f64) -> Option<f64> {
         let curve = self.curves.get(component)?;
-        Some(if component.is_bending() {
-            curve.stress(HINGE_STRAIN_PER_CURVATURE * place)
-        } else {
-            Measure { model: self.model, component }.load(place, |strain| curve.stress(strain))
-        })
+        self.model.strain_measure(component).load(place, |strain| curve.stress(strain))
     }
 
     /// Root mean square distance of a stage's curve over the range that it has seen, over the largest load there; `None`
@@ -105,7 +59,7 @@ impl Reference {
     ) -> Result<StiffnessCurve> {
         let last = curve.strains()[curve.len() - 1];
         if component.is_bending() {
-            if model != Model::Springs {
+            if !model.is_of_springs() {
                 return Ok(curve.clone());
             }
             let curvature = f64::max(0.5 * last / HINGE_STRAIN_PER_CURVATURE, 1.0);
@@ -122,16 +76,9 @@ impl Reference {
         if model == self.model {
             return Ok(curve.clone());
         }
-        let [own, other] = [self.model, model].map(|model| Measure { model, component });
-        let (mut strains, mut stiffnesses) = (Vec::new(), Vec::new());
-        for &strain in curve.strains() {
-            // At rest, as close to it: the stiffness there is a limit.
-            let place = own.place(strain.max(1e-6));
-            let load = own.load(place, |strain| curve.stress(strain));
-            // The load of a stiffness of one.
-            stiffnesses.push(load / other.load(place, |strain| strain));
-            strains.push(if strain == 0.0 { 0.0 } else { other.strain(place) });
-        }
+        let [own, other] = [self.model, model].map(|model| model.strain_measure(component));
+        let secant = |&strain| own.secant_in(other, strain, |strain| curve.stress(strain));
+        let (strains, stiffnesses) = curve.strains().iter().filter_map(secant).map(|[e, k]| (e, k)).unzip();
         StiffnessCurve::new(strains, stiffnesses, model.negative_strain(component, Compression::ZeroStrain))
     }
 }
@@ -143,11 +90,11 @@ pub(crate) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
     if component.is_bending() {
         return samples.map(|sample| [sample.strain, sample.stress]).collect();
     }
-    let measure = Measure { model: stage.model, component };
+    let measure = stage.model.strain_measure(component);
     samples
-        .map(|sample| {
-            let place = measure.place(sample.strain);
-            [place, measure.load(place, |strain| stage.curve.curve.stress(strain))]
+        .filter_map(|sample| {
+            let place = measure.physical(sample.strain)?;
+            Some([place, measure.load(place, |strain| stage.curve.curve.stress(strain))?])
         })
         .collect()
 }
@@ -195,12 +142,11 @@ mod tests {
             let told = reference.told_in(model, &grid.mesh().unwrap()).unwrap();
             for component in [Component::StretchWeft, Component::Shear] {
                 let curve = told.get(component).unwrap();
-                let measure = Measure { model, component };
+                let measure = model.strain_measure(component);
                 for place in [0.02, 0.06, 0.09] {
-                    let load = measure.load(place, |strain| curve.stress(strain));
+                    let load = measure.load(place, |strain| curve.stress(strain)).unwrap();
                     let expected = reference.load(component, place).unwrap();
                     assert!((load / expected - 1.0).abs() < 0.02, "{model} {component}: {load} {expected}");
-                    assert!((measure.place(measure.strain(place)) - place).abs() < 1e-12);
                 }
             }
         }

@@ -1,29 +1,31 @@
 //! Reading a curve's table.
 
-use super::{CurveFile, ENGINEERING, Kind};
+use super::{CurveFile, ENGINEERING, MEASURES, columns};
 use crate::error::Result;
 use crate::io::table::Table;
+use cloth_sim::strain_measure::StrainMeasure;
 use std::path::Path;
 
 impl CurveFile {
-    /// Reads a table: `strain` and `stress_n_per_m`, `curvature_per_m` and `moment_n`, or those of another
-    /// [`Kind`]; with them, if they are there, the other columns that fit-cloth writes of a curve.
+    /// Reads a table: `strain` and `stress_n_per_m`, `curvature_per_m` and `moment_n`, or those of another measure
+    /// ([`columns`]); with them, if they are there, the other columns that fit-cloth writes of a curve.
     ///
     /// # Errors
     /// Not a table of such columns; columns that contradict each other; a field that is no finite number (of
     /// a band it may be empty); strains that do not ascend; no row.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Table::read(path)?;
-        let names = |kind: &Kind| [kind.columns()[0], kind.columns()[2]];
-        let is_of = |kind: &Kind| names(kind).iter().any(|name| table.has_quantity(name));
-        let Some(kind) = Kind::ALL.into_iter().find(is_of) else {
+        let names = |measure: &Option<StrainMeasure>| [columns(*measure)[0], columns(*measure)[2]];
+        let is_of =
+            |measure: &Option<StrainMeasure>| names(measure).iter().any(|name| table.has_quantity(name));
+        let Some(measure) = MEASURES.into_iter().find(is_of) else {
             let expected = "a curve: curvature_per_m and moment_n, or strain and stress_n_per_m (import tables of forces and \
                             lengths first)";
             return Err(table.bad_header("header", table.names(), expected));
         };
-        let [axis, stiffness, stress, low, high] = kind.columns();
-        // Other kinds have none beside their own.
-        let beside = if kind == Kind::Green { ENGINEERING } else { [axis, stress] };
+        let [axis, stiffness, stress, low, high] = columns(measure);
+        // Other measures have none beside their own.
+        let beside = if measure == Some(StrainMeasure::Green) { ENGINEERING } else { [axis, stress] };
         let ([x, y], [k, a, b, e, p]) =
             table.require([axis, stress], [stiffness, low, high, beside[0], beside[1]])?;
         let column = |place: usize| -> Result<Vec<f64>> {
@@ -41,7 +43,7 @@ impl CurveFile {
         let [stiffnesses, strains, stresses] = [k, e, p].map(|place| place.map(column).transpose());
         let [low, high] = [a, b].map(|place| place.map(cells).transpose());
         let lines = (0..table.rows()).map(|row| table.line(row)).collect();
-        let file = Self::new(kind, column(x)?, column(y)?, path, lines)?;
+        let file = Self::new(measure, column(x)?, column(y)?, path, lines)?;
         file.check_beside([strains?, stresses?])?;
         Ok(Self { stiffnesses: stiffnesses?, band: [low?, high?], ..file })
     }

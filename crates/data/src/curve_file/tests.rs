@@ -92,7 +92,8 @@ fn a_table_comes_back_from_its_curve() {
         "curvature_per_m,rigidity_n_m,moment_n\n0,0.0003,0\n8,0.0006,0.0048\n",
     ] {
         let file = read(text).unwrap();
-        let component = if file.kind == Kind::Bending { Component::BendWeft } else { Component::Shear };
+        let component =
+            if file.measure == Some(StrainMeasure::Hinge) { Component::BendWeft } else { Component::Shear };
         let found = file.curve(component, Model::Stvk, NegativeStrain::Odd).unwrap();
         assert_eq!(file.to_csv(), text);
         let again = file.with_curve(&found);
@@ -164,7 +165,7 @@ const GREEN: &str = "green_strain,pk2_stress_n_per_m\n0,0\n0.105,181.81818181818
 #[test]
 fn beside_green_strain_stand_engineering_strain_and_nominal_stress() {
     let file = read(GREEN).unwrap();
-    assert_eq!(file.kind, Kind::Green);
+    assert_eq!(file.measure, Some(StrainMeasure::Green));
     let text = file.to_csv();
     let mut rows = text.lines();
     let header = "green_strain,pk2_stress_n_per_m,engineering_strain,nominal_stress_n_per_m";
@@ -196,7 +197,7 @@ fn a_table_says_whose_strain_it_is_over() {
     for (header, component, model) in tables {
         let named = curve(&of(header), component, model).unwrap();
         assert_eq!(named, curve(&of("strain,stress_n_per_m"), component, model).unwrap());
-        assert_eq!(read(&of(header)).unwrap().kind, Kind::of(component, model));
+        assert_eq!(read(&of(header)).unwrap().measure, Some(model.strain_measure(component)));
         for (_, other, another) in tables.iter().filter(|(other, ..)| *other != header) {
             let error = curve(&of(header), *other, *another).unwrap_err().to_string();
             let column = header.split(',').next().unwrap();

@@ -3,9 +3,9 @@
 use crate::error::{Error, Result};
 use crate::io::TomlFile;
 use crate::points::Points;
-use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
+use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -178,7 +178,7 @@ impl KnownFabric {
         if self.name.trim().is_empty() {
             return Err(file.invalid("name", "nothing", "the fabric's name"));
         }
-        if self.model == Model::Springs {
+        if self.model.is_of_springs() {
             return Err(file.invalid("model", "springs", "stvk or soft-constraint, whose hinges bend"));
         }
         let [first, last] = self.overhang_m;

@@ -17,10 +17,11 @@ use super::column::{Column, Quantity, Series};
 use super::rows::{SEPARATION, chosen_rows};
 use super::settings::Extension;
 use super::settings::LARGEST;
-use crate::curve_file::{CurveFile, Kind};
+use crate::curve_file::CurveFile;
 use crate::error::{Error, Result};
 use crate::io::check_length;
 use crate::io::table::Table;
+use cloth_sim::strain_measure::StrainMeasure;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -105,12 +106,12 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
         stresses.insert(0, 0.0);
         lines.insert(0, lines[0]);
     }
-    let kind = match test.measure {
-        Measure::Green => Kind::Green,
-        Measure::Engineering => Kind::Engineering,
-        Measure::Shear { .. } => Kind::Shear,
+    let measure = match test.measure {
+        Measure::Green => StrainMeasure::Green,
+        Measure::Engineering => StrainMeasure::Engineering,
+        Measure::Shear { .. } => StrainMeasure::Shear,
     };
-    CurveFile::new(kind, strains, stresses, path, lines)
+    CurveFile::new(Some(measure), strains, stresses, path, lines)
 }
 
 impl ForceTable {

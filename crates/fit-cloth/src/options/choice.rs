@@ -1,31 +1,75 @@
 //! Choices by name, and the library's types.
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use cloth_fit::stage::{Constraints, Variant};
 use cloth_sim::material::{Component, Compression, Model};
 use cloth_study::extent::Topic;
 
+/// One model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModelChoice(pub Model);
+
+impl ModelChoice {
+    const ALL: [Self; Model::ALL.len()] = {
+        let mut all = [Self(Model::Stvk); Model::ALL.len()];
+        let mut index = 0;
+        while index < all.len() {
+            all[index] = Self(Model::ALL[index]);
+            index += 1;
+        }
+        all
+    };
+}
+
+impl ValueEnum for ModelChoice {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.name()).help(self.0.description()))
+    }
+}
+
 /// One model, or all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ModelChoice {
-    /// Diagonalised StVK, discrete shells
-    Stvk,
-    /// Soft constraints, discrete shells
-    SoftConstraint,
-    /// Springs
-    Springs,
-    /// All three in turn
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelsChoice {
+    /// One.
+    One(ModelChoice),
+    /// All in turn.
     All,
 }
 
-impl ModelChoice {
+impl ModelsChoice {
+    const ALL: [Self; Model::ALL.len() + 1] = {
+        let mut all = [Self::All; Model::ALL.len() + 1];
+        let mut index = 0;
+        while index < Model::ALL.len() {
+            all[index] = Self::One(ModelChoice::ALL[index]);
+            index += 1;
+        }
+        all
+    };
+
     /// The models chosen.
     pub fn models(self) -> Vec<Model> {
         match self {
-            Self::Stvk => vec![Model::Stvk],
-            Self::SoftConstraint => vec![Model::SoftConstraint],
-            Self::Springs => vec![Model::Springs],
+            Self::One(ModelChoice(model)) => vec![model],
             Self::All => Model::ALL.to_vec(),
+        }
+    }
+}
+
+impl ValueEnum for ModelsChoice {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Self::One(model) => model.to_possible_value(),
+            Self::All => Some(PossibleValue::new("all").help("All in turn")),
         }
     }
 }
@@ -109,23 +153,6 @@ pub enum ComponentChoice {
 
 impl From<ComponentChoice> for Component {
     fn from(choice: ComponentChoice) -> Self {
-        Self::ALL[choice as usize]
-    }
-}
-
-/// One model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum TableModel {
-    /// Green strain, hinges
-    Stvk,
-    /// Engineering strain, hinges
-    SoftConstraint,
-    /// Engineering strain, springs
-    Springs,
-}
-
-impl From<TableModel> for Model {
-    fn from(choice: TableModel) -> Self {
         Self::ALL[choice as usize]
     }
 }

@@ -1,6 +1,6 @@
 //! The flags of the commands that fit.
 
-use super::choice::{CompressionChoice, ConstraintChoice, ModelChoice, VariantChoice};
+use super::choice::{CompressionChoice, ConstraintChoice, ModelChoice, ModelsChoice, VariantChoice};
 use crate::failure::Failure;
 use crate::output::Output;
 use clap::Args;
@@ -56,8 +56,8 @@ pub struct FitFlags {
     #[command(flatten)]
     pub how: CurveFlags,
     /// Cloth model
-    #[arg(long, value_enum, default_value_t = ModelChoice::Stvk)]
-    pub model: ModelChoice,
+    #[arg(long, value_enum, default_value_t = ModelsChoice::One(ModelChoice(Model::Stvk)))]
+    pub model: ModelsChoice,
     /// Model variant: nonlinear or constant stiffness; weft and warp separate or shared
     #[arg(long, value_enum, default_value_t = VariantChoice::Orthotropic)]
     pub variant: VariantChoice,

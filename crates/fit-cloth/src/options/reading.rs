@@ -1,6 +1,6 @@
 //! The flags of the commands that read a curve.
 
-use super::choice::{ComponentChoice, TableModel};
+use super::choice::{ComponentChoice, ModelChoice};
 use clap::Args;
 use cloth_sim::material::{Component, Model};
 
@@ -14,7 +14,7 @@ pub struct Reading {
     pub component: Option<ComponentChoice>,
     /// Model whose strain measure the table uses [default: by its columns, else stvk]
     #[arg(long, value_enum)]
-    pub model: Option<TableModel>,
+    pub model: Option<ModelChoice>,
 }
 
 impl Reading {
@@ -25,6 +25,6 @@ impl Reading {
 
     /// The model, if one was named.
     pub fn model(&self) -> Option<Model> {
-        self.model.map(Model::from)
+        self.model.map(|ModelChoice(model)| model)
     }
 }

@@ -1,11 +1,10 @@
 //! The axes of a curve.
 
-use cloth_data::curve_file::Kind;
 use cloth_sim::material::{Component, Model};
 
 /// What a curve is over, and what it gives.
 pub(crate) fn curve_labels(model: Model, component: Component) -> [String; 2] {
-    let [strain, stress] = Kind::of(component, model).names();
+    let [strain, stress] = model.strain_measure(component).names();
     match component.is_bending() {
         true => [format!("{strain} [1/m]"), format!("{stress} [N]")],
         false => [format!("{strain} [–]"), format!("{stress} [N/m]")],

@@ -5,9 +5,9 @@ use super::interventions::interventions;
 use super::list::list;
 use super::range::seen;
 use super::unit::unit;
-use cloth_data::curve_file::Kind;
 use cloth_fit::equilibria::Objective;
 use cloth_fit::stage::report::StageReport;
+use cloth_sim::strain_measure::StrainMeasure;
 use std::fmt::Write;
 
 /// What a stage used and how it went, a line each; without the time, which is not the same twice.
@@ -105,9 +105,9 @@ fn curve(stage: &StageReport) -> String {
     if !report.observed {
         return "  NOT observed: a curve twice as stiff would meet the measurements as well\n".into();
     }
-    let [strain, stiffness, stress] = match Kind::of(stage.components[0], stage.model) {
-        Kind::Bending => ["curvature [1/m]", "rigidity [N m]", "moment [N]"],
-        kind => [kind.names()[0], "stiffness [N/m]", "stress [N/m]"],
+    let [strain, stiffness, stress] = match stage.model.strain_measure(stage.components[0]) {
+        StrainMeasure::Hinge | StrainMeasure::RingTwo => ["curvature [1/m]", "rigidity [N m]", "moment [N]"],
+        measure => [measure.names()[0], "stiffness [N/m]", "stress [N/m]"],
     };
     let mut text = format!(
         "  {strain:<15}  {stiffness:>15}             {stress:>12}   (seen from {}, {:.0} % of the range)\n",

@@ -6,7 +6,7 @@ use super::number::{cell, percent};
 use cloth_data::frame::MeasurementSet;
 use cloth_fit::judge::validation::{Validated, Validation};
 use cloth_fit::material::file::{CurveEntry, MaterialFile};
-use cloth_sim::material::{Component, Model};
+use cloth_sim::material::Component;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -32,7 +32,7 @@ pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Va
 /// A warning where springs that bend were tried on another grid than any of their fit's: their moments belong to it.
 pub fn other_grid(material: &MaterialFile, validation: &Validation) -> Option<String> {
     let bends = |(component, entry): (&Component, &CurveEntry)| component.is_bending() && entry.observed;
-    if material.model != Model::Springs || !material.curves.iter().any(bends) {
+    if !material.model.is_of_springs() || !material.curves.iter().any(bends) {
         return None;
     }
     let fitted: BTreeSet<[usize; 2]> = material.provenance.nodes.values().copied().collect();

@@ -2,21 +2,15 @@
 
 use crate::material::file::MaterialFile;
 use cloth_data::error::{Error, Result};
-use cloth_sim::curve::soundness::{self, BENDING_STIFFNESS, Context, Finding, MEMBRANE_STIFFNESS};
+use cloth_sim::curve::soundness::{self, Context, Finding};
 use cloth_sim::material::{Component, Curves, Model};
 use std::path::Path;
 
-/// What a component's curve is checked against in a model; nothing is known of what is plausible for the ring-2 springs
-/// of a grid.
+/// What a component's curve is checked against in a model.
 ///
 /// * `visited` — the strains that a measurement visited, if there was one
 pub fn context(model: Model, component: Component, visited: Option<[f64; 2]>) -> Context {
-    let magnitude = match (component.is_bending(), model) {
-        (false, _) => Some(MEMBRANE_STIFFNESS),
-        (true, Model::Springs) => None,
-        (true, _) => Some(BENDING_STIFFNESS),
-    };
-    Context { magnitude, visited }
+    Context { magnitude: model.strain_measure(component).plausible_stiffness(), visited }
 }
 
 /// The findings of every curve of a material, those without any too.

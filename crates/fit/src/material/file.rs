@@ -11,7 +11,6 @@ pub use entry::{Correlation, CurveEntry, ResidualEntry};
 use crate::incremental::{Failure, FitReport};
 use crate::stage::report::Basis;
 use crate::stage::{Constraints, Settings, Variant};
-use cloth_data::curve_file::Kind;
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Fabric, MeasurementSet};
 use cloth_data::io::json_file::{parse_version, unique};
@@ -20,6 +19,7 @@ use cloth_data::notice::Notice;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::Diagonals;
+use cloth_sim::strain_measure::StrainMeasure;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
@@ -203,14 +203,18 @@ impl MaterialFile {
 
 /// What a component's curve gives over what.
 fn measure(model: Model, component: Component) -> String {
-    let [strain, stress] = Kind::of(component, model).names();
+    let measure = model.strain_measure(component);
+    let [strain, stress] = measure.names();
     let stress = stress.replace("PK2", "second Piola–Kirchhoff (PK2)");
-    match (component.is_bending(), model) {
-        (false, _) => format!("{stress} per width [N/m] over {strain} [1]"),
-        (true, Model::Springs) => {
+    match measure {
+        StrainMeasure::Green
+        | StrainMeasure::Engineering
+        | StrainMeasure::Shear
+        | StrainMeasure::Diagonal => format!("{stress} per width [N/m] over {strain} [1]"),
+        StrainMeasure::RingTwo => {
             "stress of ring-2 springs [N/m] over their strain [1], of this grid only".into()
         }
-        (true, _) => format!(
+        StrainMeasure::Hinge => format!(
             "{stress} [N] over the strain of hinges [1/m], three times the curvature: stiffness_n_m is a third of the flexural \
              rigidity, rigidity_n_m"
         ),

@@ -4,7 +4,6 @@ use cloth_data::curve_file::CurveFile;
 use cloth_data::error::{Error, Result};
 use cloth_data::io::TomlFile;
 use cloth_data::points::Points as ControlPoints;
-use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Compression, Curves, Model};
 use serde::de::{SeqAccess, Visitor};
@@ -100,7 +99,8 @@ impl Points {
         file: &TomlFile,
     ) -> Result<StiffnessCurve> {
         // Springs that bend have a strain of their own, without unit, and no curvature that would not depend on the mesh.
-        let hinge = component.is_bending() && model != Model::Springs;
+        let measure = model.strain_measure(component);
+        let hinge = measure.is_per_metre();
         let (places, values) = ((&self.strain, "strain"), (&self.stiffness_n_per_m, "stiffness_n_per_m"));
         let (physical_places, physical_values) =
             ((&self.curvature_per_m, "curvature_per_m"), (&self.rigidity_n_m, "rigidity_n_m"));
@@ -132,7 +132,7 @@ impl Points {
             table: format!("curves.{component}"),
             places: (places.1, strains),
             values: (values.1, stiffnesses),
-            strain_per_unit: if hinge { HINGE_STRAIN_PER_CURVATURE } else { 1.0 },
+            strain_per_unit: measure.strain_per_unit(),
         };
         points.curve(negative, file)
     }

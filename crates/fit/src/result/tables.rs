@@ -2,7 +2,7 @@
 
 use crate::incremental::FitReport;
 use crate::stage::report::{Sample, SequenceReport, StageReport};
-use cloth_data::curve_file::{ENGINEERING, Kind};
+use cloth_data::curve_file::{ENGINEERING, columns, engineering};
 use std::fmt::Write;
 
 /// 201 rows; the band's cells are empty where the data do not see the curve, its columns absent where they see none of it. Beside Green strain and its
@@ -10,10 +10,10 @@ use std::fmt::Write;
 pub(super) fn curve_table(stage: &StageReport) -> String {
     let curve = &stage.curve;
     let banded = curve.samples.iter().any(|sample| sample.band.is_some());
-    let kind = Kind::of(stage.components[0], stage.model);
-    let beside = |sample: &Sample| kind.engineering(sample.strain, sample.stress);
+    let measure = stage.model.strain_measure(stage.components[0]);
+    let beside = |sample: &Sample| engineering(measure, sample.strain, sample.stress);
     let engineering = curve.samples.iter().all(|sample| beside(sample).is_some());
-    let columns = kind.columns();
+    let columns = columns(Some(measure));
     let mut table = columns[..if banded { 5 } else { 3 }].join(",");
     if engineering {
         table = [&table, ENGINEERING[0], ENGINEERING[1]].join(",");

@@ -10,7 +10,7 @@ use crate::optimise::gauss_newton::Domain;
 use crate::twin::replica::Replica;
 use cloth_data::error::Result;
 use cloth_sim::curve::{StiffnessCurve, equidistant};
-use cloth_sim::material::{Component, Curves, Model};
+use cloth_sim::material::{Component, Curves};
 use std::collections::BTreeMap;
 
 /// Where a stage starts.
@@ -176,7 +176,7 @@ fn most_that_bends(plan: &Plan, known: &Curves, settings: &Settings) -> f64 {
     let yarns = plan.components.iter().filter(|component| component.is_stretch());
     let stiffnesses = yarns.filter_map(|&component| Some(known.get(component)?.stiffnesses()[0]));
     let largest = stiffnesses.fold(0.0, f64::max);
-    if settings.model == Model::Springs && largest > 0.0 { largest } else { f64::INFINITY }
+    if settings.model.is_of_springs() && largest > 0.0 { largest } else { f64::INFINITY }
 }
 
 /// The median over all frames of the stiffness that Peirce's formula gives; of that which gives a rigidity, N·m, if one is

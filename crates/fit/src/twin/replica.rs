@@ -125,8 +125,8 @@ impl Replica {
     pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
         let sequence = &*in_place(sequence);
         // On the bias the yarns run along the cells' diagonals: triangles without an edge along each would lock.
-        let diagonals = match (sequence.kind, parts.model) {
-            (Kind::StretchBias, Model::Stvk | Model::SoftConstraint) => Diagonals::Crossed,
+        let diagonals = match sequence.kind {
+            Kind::StretchBias if !parts.model.is_of_springs() => Diagonals::Crossed,
             _ => parts.diagonals,
         };
         let specimen = Specimen::new(sequence, parts.nodes, diagonals)?;
@@ -394,7 +394,7 @@ fn cloth(
 /// Refuses cells in which springs would not be what they are meant for.
 fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result<()> {
     let [dx, dy] = specimen.grid.cell();
-    if model != Model::Springs || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
+    if !model.is_of_springs() || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
         return Ok(());
     }
     let Grid { width, height, diagonals, .. } = specimen.grid;

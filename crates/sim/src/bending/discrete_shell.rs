@@ -8,16 +8,6 @@ use crate::mesh::Mesh;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
-/// A hinge's own strain per curvature where a regular grid is rolled about one of its axes; the flexural
-/// rigidity is as many times the hinge's stiffness.
-///
-/// ```text
-/// ε = 3κ    D = 3k        κ in 1/m, D and k in N·m
-/// ```
-///
-/// Source: h₀ = a third of the mean height; docs/model.md, "What a hinge's stiffness means".
-pub const HINGE_STRAIN_PER_CURVATURE: f64 = 3.0;
-
 /// Two triangles sharing an edge.
 ///
 /// ```text
@@ -29,7 +19,7 @@ pub const HINGE_STRAIN_PER_CURVATURE: f64 = 3.0;
 /// ```
 ///
 /// Source: Miguel et al. 2012, eq. 5, after Grinspun et al. 2003. As curvature and flexural rigidity:
-/// [`HINGE_STRAIN_PER_CURVATURE`].
+/// [`HINGE_STRAIN_PER_CURVATURE`](crate::strain_measure::HINGE_STRAIN_PER_CURVATURE).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hinge {
     /// The edge x₀, x₁ and the wings x₂, x₃.

@@ -7,11 +7,9 @@ use plotters::style::{Color, RGBColor, ShapeStyle};
 
 /// The colour of a model.
 pub(super) fn colour(model: Model) -> RGBColor {
-    match model {
-        Model::Stvk => BLUE,
-        Model::SoftConstraint => VERMILLION,
-        Model::Springs => GREEN,
-    }
+    let colours = [BLUE, VERMILLION, GREEN];
+    let place = Model::ALL.iter().position(|other| *other == model).unwrap_or_default();
+    colours[place % colours.len()]
 }
 
 /// Dots of the default solver are filled, those of the published one open.

@@ -1,8 +1,8 @@
 //! A control point in `material.json`, whose keys tell its unit.
 
 use cloth_data::io::json_file::there;
-use cloth_sim::bending::HINGE_STRAIN_PER_CURVATURE;
 use cloth_sim::material::{Component, Model};
+use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use serde::{Deserialize, Serialize};
 
 /// A control point. Its keys in the file tell its unit: see [`Unit`].
@@ -31,11 +31,7 @@ pub enum Unit {
 impl Unit {
     /// The unit of a component's stiffness in a model.
     pub fn of(model: Model, component: Component) -> Self {
-        if component.is_bending() && model != Model::Springs {
-            Self::NewtonMetre
-        } else {
-            Self::NewtonPerMetre
-        }
+        if model.strain_measure(component).is_per_metre() { Self::NewtonMetre } else { Self::NewtonPerMetre }
     }
 }
 
