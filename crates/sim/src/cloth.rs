@@ -213,7 +213,7 @@ impl Cloth {
         scale.magnitude.fill(0.0);
         scale.stiffness.fill(0.0);
         let mut pass = GradientPass {
-            curves,
+            law: curves,
             x,
             gradient: &mut *gradient,
             magnitude: &mut scale.magnitude,
@@ -241,7 +241,7 @@ impl Cloth {
         values.clear();
         values.resize(len + twice, 0.0);
         let targets = [&self.targets[0][..], &self.targets[1][..]];
-        self.visit(&mut HessianPass { curves, x, curvature, targets, values });
+        self.visit(&mut HessianPass { law: curves, x, curvature, targets, values });
         // Elements list an entry and its mirror once; where both fall on one diagonal entry, it counts twice.
         (0..twice).for_each(|place| values[place] += 2.0 * values[len + place]);
         values.truncate(len);
@@ -274,8 +274,14 @@ impl Cloth {
         let points = curves.get(component).map_or(0, |curve| curve.len());
         columns.clear();
         columns.resize(points * 3 * self.nodes, 0.0);
-        let mut weights = vec![0.0; points];
-        self.visit(&mut ParameterPass { curves, x, component, weights: &mut weights, columns });
+        let mut derivative = vec![0.0; points];
+        self.visit(&mut ParameterPass {
+            law: curves,
+            x,
+            parameters: component,
+            derivative: &mut derivative,
+            columns,
+        });
     }
 
     /// All strains of a component, each with the area (m²) it stands for.
@@ -396,7 +402,7 @@ impl Cloth {
 
     /// Elastic energy, J: the total without that of the weight.
     pub fn elastic_energy(&self, curves: &Curves, x: &[f64]) -> f64 {
-        let mut pass = EnergyPass { curves, x, energy: 0.0 };
+        let mut pass = EnergyPass { law: curves, x, energy: 0.0 };
         self.visit(&mut pass);
         pass.energy
     }

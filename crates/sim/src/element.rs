@@ -1,18 +1,21 @@
 //! One element's mathematics, and the sums over all elements of a kind.
 //!
-//! Every element of every model is **strain measure × curve → energy**:
+//! Every element of every model is **strain measure × law → energy**:
 //!
 //! ```text
-//! E   = A Σ_c W_c(ε_c)                                   A the area that the element stands for
-//! ∇E  = A Σ_c σ_c ∇ε_c                                   σ_c = W_c′, from the component's curve
-//! ∇²E = A Σ_c [ σ_c′ ∇ε_c ∇ε_cᵀ + σ_c ∇²ε_c ]            stiffness and geometric part
+//! E   = A W(ε)                                           A the area that the element stands for
+//! ∇E  = A Σ_c σ_c ∇ε_c                                   σ_c = ∂W/∂ε_c, from the law
+//! ∇²E = A [ Σ_cd T_cd ∇ε_c ∇ε_dᵀ + Σ_c σ_c ∇²ε_c ]       stiffness and geometric part, T_cd = ∂σ_c/∂ε_d
 //! ```
+//!
+//! T is diagonal where every component has its own curve ([`law`](crate::law)).
 //!
 //! An element sees `N` coordinates a node: 3 in space, 2 where the motion is planar.
 //!
 //! Source: Miguel et al. 2012, §4.1.
 
-use crate::material::{Component, Curves};
+use crate::law::{Law, Site, Stresses};
+use crate::material::Component;
 use nalgebra::{SMatrix, SVector};
 
 /// The first `N` coordinates of a node, m.
@@ -101,59 +104,56 @@ pub(crate) trait Pass {
 }
 
 /// Σ energies, J.
-pub(crate) struct EnergyPass<'a> {
-    pub(crate) curves: &'a Curves,
+pub(crate) struct EnergyPass<'a, L> {
+    pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
     pub(crate) energy: f64,
 }
 
-impl Pass for EnergyPass<'_> {
+impl<L: Law> Pass for EnergyPass<'_, L> {
     fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         &mut self,
-        _part: usize,
+        part: usize,
         elements: &[E],
     ) {
-        for element in elements {
+        for (index, element) in elements.iter().enumerate() {
+            let site = Site { part, element: index, components: element.components() };
             let strains = element.strains(&gather(element.nodes(), self.x));
-            let density: f64 = (0..S)
-                .filter_map(|c| Some(self.curves.get(element.components()[c])?.energy(strains[c])))
-                .sum();
-            self.energy += element.area() * density;
+            self.energy += element.area() * self.law.energy(&site, &strains);
         }
     }
 }
 
 /// Σ gradients, N, and what rounding may make of each, N per m of coordinate error.
-pub(crate) struct GradientPass<'a> {
-    pub(crate) curves: &'a Curves,
+pub(crate) struct GradientPass<'a, L> {
+    pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
     pub(crate) gradient: &'a mut [f64],
     /// Per node: Σ over elements of the force's size, N.
     pub(crate) magnitude: &'a mut [f64],
-    /// Per node: Σ A σ′|∇ε|², the stiffness through which an error of position becomes a force, N/m.
+    /// Per node: Σ A |T_cc| |∇ε_c|², the stiffness through which an error of position becomes a force, N/m.
     pub(crate) stiffness: &'a mut [f64],
     pub(crate) energy: f64,
 }
 
-impl Pass for GradientPass<'_> {
+impl<L: Law> Pass for GradientPass<'_, L> {
     fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         &mut self,
-        _part: usize,
+        part: usize,
         elements: &[E],
     ) {
-        for element in elements {
+        for (index, element) in elements.iter().enumerate() {
             let (nodes, components, area) = (element.nodes(), element.components(), element.area());
+            let site = Site { part, element: index, components };
             let x = gather(nodes, self.x);
             let (strains, gradients) = element.evaluate(&x);
+            let Stresses { stress, tangent } = self.law.stresses(&site, &strains);
+            self.energy += area * self.law.energy(&site, &strains);
             let mut force = [Point::<N>::zeros(); K];
-            for c in 0..S {
-                let Some(curve) = self.curves.get(components[c]) else { continue };
-                let response = curve.response(strains[c]);
-                self.energy += area * curve.energy(strains[c]);
+            for c in (0..S).filter(|&c| self.law.has(components[c])) {
                 for a in 0..K {
-                    force[a] += area * response.stress * gradients[c][a];
-                    self.stiffness[nodes[a]] +=
-                        area * response.tangent.abs() * gradients[c][a].norm_squared();
+                    force[a] += area * stress[c] * gradients[c][a];
+                    self.stiffness[nodes[a]] += area * tangent[c][c].abs() * gradients[c][a].norm_squared();
                 }
             }
             for a in 0..K {
@@ -167,8 +167,8 @@ impl Pass for GradientPass<'_> {
 }
 
 /// Σ Hessians, scattered through precomputed targets.
-pub(crate) struct HessianPass<'a> {
-    pub(crate) curves: &'a Curves,
+pub(crate) struct HessianPass<'a, L> {
+    pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
     pub(crate) curvature: Curvature<'a>,
     /// Per part: where each lower entry of each element goes, in the order of [`lower_entries`].
@@ -176,7 +176,7 @@ pub(crate) struct HessianPass<'a> {
     pub(crate) values: &'a mut [f64],
 }
 
-impl Pass for HessianPass<'_> {
+impl<L: Law> Pass for HessianPass<'_, L> {
     fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         &mut self,
         part: usize,
@@ -186,24 +186,22 @@ impl Pass for HessianPass<'_> {
         let mut blocks = [[Block::<N>::zeros(); K]; K];
         for (index, (element, targets)) in elements.iter().zip(targets).enumerate() {
             let (components, area) = (element.components(), element.area());
+            let site = Site { part, element: index, components };
             let x = gather(element.nodes(), self.x);
             let (strains, gradients) = element.evaluate(&x);
-            let (mut stress, mut tangent) = ([0.0; S], [0.0; S]);
-            for c in 0..S {
-                let Some(curve) = self.curves.get(components[c]) else { continue };
-                let response = curve.response(strains[c]);
-                // A curve that softens has a negative tangent, which clamping drops too.
-                let clamped = matches!(self.curvature, Curvature::Clamped | Curvature::Material);
-                tangent[c] = area * if clamped { response.tangent.max(0.0) } else { response.tangent };
-                stress[c] = area
-                    * match self.curvature {
-                        // The mixed strains belong to the membrane: a hinge uses its own stress.
-                        Curvature::Mixed(mixed) if part == 0 => curve.stress(mixed[S * index + c]),
-                        _ => response.stress,
-                    };
+            let Stresses { mut stress, mut tangent } = self.law.stresses(&site, &strains);
+            if matches!(self.curvature, Curvature::Clamped | Curvature::Material) {
+                L::clamp(&mut tangent);
             }
+            // The mixed strains belong to the membrane: a hinge uses its own stress.
+            if let (Curvature::Mixed(mixed), 0) = (self.curvature, part) {
+                let mixed = std::array::from_fn(|c| mixed[S * index + c]);
+                stress = self.law.stresses(&site, &mixed).stress;
+            }
+            stress.iter_mut().for_each(|stress| *stress *= area);
+            tangent.iter_mut().flatten().for_each(|tangent| *tangent *= area);
             for a in 1..K {
-                let scaled: [Point<N>; S] = std::array::from_fn(|c| gradients[c][a] * tangent[c]);
+                let scaled = scaled::<K, N, S, L>(&tangent, &gradients, a);
                 for b in 1..=a {
                     let mut block = scaled[0] * gradients[0][b].transpose();
                     for c in 1..S {
@@ -234,6 +232,19 @@ impl Pass for HessianPass<'_> {
     }
 }
 
+/// Σ_d T_cd ∇ε_d at one node, for every strain c.
+#[inline(always)]
+fn scaled<const K: usize, const N: usize, const S: usize, L: Law>(
+    tangent: &[[f64; S]; S],
+    gradients: &[[Point<N>; K]; S],
+    node: usize,
+) -> [Point<N>; S] {
+    std::array::from_fn(|c| match L::COUPLED {
+        false => gradients[c][node] * tangent[c][c],
+        true => (0..S).map(|d| gradients[d][node] * tangent[c][d]).sum(),
+    })
+}
+
 /// How many of them an element has.
 fn lower_entry_count(nodes: usize, coordinates: usize) -> usize {
     let unknowns = nodes * coordinates;
@@ -255,34 +266,36 @@ pub(crate) fn lower_entries(nodes: usize, coordinates: usize) -> Vec<[(usize, us
     entries
 }
 
-/// Derivative of the gradient with respect to one component's control values: one column of 3 × nodes a control point.
-pub(crate) struct ParameterPass<'a> {
-    pub(crate) curves: &'a Curves,
+/// Derivative of the gradient with respect to a block of the law's parameters: one column of 3 × nodes a parameter.
+pub(crate) struct ParameterPass<'a, L: Law> {
+    pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
-    pub(crate) component: Component,
-    pub(crate) weights: &'a mut [f64],
+    pub(crate) parameters: L::Parameters,
+    /// Room for one number a parameter.
+    pub(crate) derivative: &'a mut [f64],
     pub(crate) columns: &'a mut [f64],
 }
 
-impl Pass for ParameterPass<'_> {
+impl<L: Law> Pass for ParameterPass<'_, L> {
     fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         &mut self,
-        _part: usize,
+        part: usize,
         elements: &[E],
     ) {
-        let Some(curve) = self.curves.get(self.component) else { return };
-        for element in elements {
+        for (index, element) in elements.iter().enumerate() {
             let (nodes, components) = (element.nodes(), element.components());
-            if !components.contains(&self.component) {
+            let site = Site { part, element: index, components };
+            if !(0..S).any(|c| self.law.depends(&site, c, self.parameters)) {
                 continue;
             }
             let x = gather(nodes, self.x);
             let (strains, gradients) = element.evaluate(&x);
-            for c in (0..S).filter(|&c| components[c] == self.component) {
-                curve.weights(strains[c], self.weights);
-                for (weight, column) in self.weights.iter().zip(self.columns.chunks_exact_mut(self.x.len())) {
+            for c in (0..S).filter(|&c| self.law.depends(&site, c, self.parameters)) {
+                self.law.derivative(&site, &strains, c, self.parameters, self.derivative);
+                let columns = self.columns.chunks_exact_mut(self.x.len());
+                for (derivative, column) in self.derivative.iter().zip(columns) {
                     for a in 0..K {
-                        let force = element.area() * weight * gradients[c][a];
+                        let force = element.area() * derivative * gradients[c][a];
                         for i in 0..N {
                             column[3 * nodes[a] + i] += force[i];
                         }

@@ -27,6 +27,7 @@
 //! | [`mesh::Grid`], [`mesh::Mesh`] | the sheet at rest, checked |
 //! | [`curve::StiffnessCurve`], [`material::Curves`] | stiffness against strain, one a component |
 //! | [`element::Element`] | strains of one element and their derivatives |
+//! | [`law::Law`] | from the strains of one element to energy, stresses and tangent |
 //! | [`membrane::Membrane`], [`bending::Bending`] | the elements of a mesh |
 //! | [`load::Held`] | nodes that clips or tables hold |
 //! | [`cloth::Problem`] → [`cloth::Cloth`] | all of it made ready: energy, gradient, sparse Hessian |
@@ -77,6 +78,7 @@ pub mod equilibrium;
 pub mod error;
 pub mod finite_difference;
 mod increment;
+pub mod law;
 mod linear;
 pub mod load;
 pub mod material;
