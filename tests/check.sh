@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What to run before a push: tests, format, length of the prose, lints, documentation. `tests/check.sh --long` runs the ignored tests too,
-# which take the full counts (100 000 states, 100 seeds).
+# What to run before a push: tests, format, length of the prose, lints, documentation. `tests/check.sh --long` runs the
+# ignored tests too, which take the full counts (100 000 states, 100 seeds).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
