@@ -2,6 +2,7 @@
 //!
 //! Plain data in SI units. [`io`](crate::io) is its only reader and writer.
 
+pub use crate::kind::Kind;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Isometry3, SVector, Vector3};
 use serde::{Deserialize, Serialize};
@@ -36,61 +37,6 @@ pub struct Fabric {
     /// Anything else.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub notes: Option<String>,
-}
-
-/// Which test a sequence is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// Two bars pulled apart along weft.
-    StretchWeft,
-    /// Two bars pulled apart along warp.
-    StretchWarp,
-    /// The same on a strip cut at 45° to the yarns.
-    StretchBias,
-    /// Picture frame.
-    Shear,
-    /// Pushed off a table edge along weft.
-    BendWeft,
-    /// Pushed off a table edge along warp.
-    BendWarp,
-    /// Pushed off a table edge at 45° to the yarns.
-    BendBias,
-    /// Opposite edges pulled opposite ways.
-    ComplexShear,
-    /// Four small clips pulled at the corners.
-    CornerPull,
-}
-
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Self; 9] = [
-        Self::StretchWeft,
-        Self::StretchWarp,
-        Self::StretchBias,
-        Self::Shear,
-        Self::BendWeft,
-        Self::BendWarp,
-        Self::BendBias,
-        Self::ComplexShear,
-        Self::CornerPull,
-    ];
-}
-
-impl std::fmt::Display for Kind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(match self {
-            Self::StretchWeft => "stretch-weft",
-            Self::StretchWarp => "stretch-warp",
-            Self::StretchBias => "stretch-bias",
-            Self::Shear => "shear",
-            Self::BendWeft => "bend-weft",
-            Self::BendWarp => "bend-warp",
-            Self::BendBias => "bend-bias",
-            Self::ComplexShear => "complex-shear",
-            Self::CornerPull => "corner-pull",
-        })
-    }
 }
 
 /// One test: ordered frames of one specimen.

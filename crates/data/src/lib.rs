@@ -18,6 +18,7 @@ pub mod error;
 pub mod frame;
 pub mod inspection;
 pub mod io;
+pub mod kind;
 pub mod locator;
 pub mod measure;
 pub mod notice;

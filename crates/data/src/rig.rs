@@ -38,6 +38,7 @@ pub use protocol::{KINDS, Rig};
 
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Sequence};
+use crate::kind::Holding;
 use crate::locator::Locator;
 use cloth_sim::material::Curves;
 use cloth_sim::mesh::{Diagonals, Mesh};
@@ -133,16 +134,14 @@ impl Rig {
 
     fn test(&self, fabric: &KnownFabric, kind: Kind) -> Test {
         let back = |ends: &[f64]| there_and_back(ends, self.frames, self.cycles);
-        match kind {
-            Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias => {
-                stretch::test(fabric, kind, back(&[stretch::largest(fabric, kind)]))
-            }
-            Kind::Shear => picture_frame::test(fabric, back(&[fabric.largest_shear_rad])),
-            Kind::BendWeft | Kind::BendWarp | Kind::BendBias => {
+        match kind.holding() {
+            Holding::Strip => stretch::test(fabric, kind, back(&[stretch::largest(fabric, kind)])),
+            Holding::PictureFrame => picture_frame::test(fabric, back(&[fabric.largest_shear_rad])),
+            Holding::Table => {
                 overhang::test(fabric, kind, self.nodes, outward(fabric.overhang_m, self.frames))
             }
-            Kind::ComplexShear => complex_shear::test(fabric, back(&[fabric.complex_shear_m])),
-            Kind::CornerPull => {
+            Holding::Bars => complex_shear::test(fabric, back(&[fabric.complex_shear_m])),
+            Holding::Corners => {
                 corner_pull::test(fabric, back(&[fabric.corner_pull_m, -fabric.corner_pull_m]))
             }
         }
@@ -198,7 +197,7 @@ fn observe(
     instruments: &mut Instruments<'_>,
 ) -> Frame {
     let [width, height] = test.sheet.size;
-    let hinged = test.kind == Kind::Shear;
+    let hinged = test.kind.holding() == Holding::PictureFrame;
     let grips = test.grips();
     let mut cord = |(clip, hold): (usize, &Vector3<f64>)| {
         let weight = test.gravity * grips[clip].mass_kg;

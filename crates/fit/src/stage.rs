@@ -30,7 +30,7 @@ pub use course::fit;
 pub use growth::{Growth, domain, grow, refit};
 pub use growth_rule::{GrowthRule, Measure};
 pub use level::Level;
-pub use plan::{Plan, kinds_of, kinds_of_all};
+pub use plan::{Plan, kinds_of_all};
 pub use settings::{Constraints, FirstStiffness, Settings, Variant};
 pub(crate) use start::{softest_bending, unyielding};
 pub(crate) use summary::sequence_reports;

@@ -6,7 +6,8 @@
 //!   ○──●──●  d    beside: a free one lags by about ε d along the pull, one that the clip holds does not
 //! ```
 
-use crate::frame::{Fabric, Kind, Sequence, is_seen};
+use crate::frame::{Fabric, Sequence, is_seen};
+use crate::kind::Holding;
 use crate::measure::{clip_centres, mean, moved};
 use crate::notice::Notice;
 use crate::rectangle::{Rectangle, bounds};
@@ -27,7 +28,7 @@ const WHOLE: f64 = 0.98;
 /// Doubts a stretched specimen whose clips do not hold whole sides: with 83 % of a side a fit that leaves shear out makes denim
 /// 12 % too stiff. More so where a clip holds more than it says.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
-    let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+    let stretched = sequence.kind.holding() == Holding::Strip;
     if stretched && sequence.clips.len() == 2 {
         notices.extend([0, 1].into_iter().filter_map(|clip| holds_part(sequence, clip)));
     }

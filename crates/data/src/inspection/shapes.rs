@@ -1,6 +1,7 @@
 //! Shapes that are missing, or whose heights are all the same, as a camera that sees no depth has them.
 
-use crate::frame::{Fabric, HEIGHT_SEEN, Kind, Sequence, is_seen};
+use crate::frame::{Fabric, HEIGHT_SEEN, Sequence, is_seen};
+use crate::kind::Holding;
 use crate::notice::Notice;
 use nalgebra::Vector3;
 
@@ -22,7 +23,8 @@ pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut V
     let places = sequence.frames.iter().flat_map(|frame| &frame.positions).flatten();
     let seen: Vec<&Vector3<f64>> = places.filter(|place| is_seen(place)).collect();
     let alike = |axis: &usize| seen.iter().all(|place| (place[*axis] - seen[0][*axis]).abs() <= HEIGHT_SEEN);
-    if sequence.kind != Kind::Shear || seen.is_empty() || !(0..3).any(|axis| alike(&axis)) {
+    if sequence.kind.holding() != Holding::PictureFrame || seen.is_empty() || !(0..3).any(|axis| alike(&axis))
+    {
         return;
     }
     notices.push(Notice::remark(&sequence.name, "positions.npy", "one and the same height of every vertex in every frame: it was not measured", "heights as they were seen, which tell whether the sheet buckled: it is fitted as one that nobody saw"));

@@ -1,6 +1,7 @@
 //! Forces on a sheet in a picture frame that is not sheared yet.
 
-use crate::frame::{Clip, Fabric, Kind, Sequence};
+use crate::frame::{Clip, Fabric, Sequence};
+use crate::kind::Holding;
 use crate::measure::{clip_centres, mean};
 use crate::notice::Notice;
 use nalgebra::Vector3;
@@ -14,7 +15,7 @@ const SURE: f64 = 5.0;
 
 /// Doubts shear whose cords pull before anything is sheared.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
-    if sequence.kind != Kind::Shear {
+    if sequence.kind.holding() != Holding::PictureFrame {
         return;
     }
     let sequence: &Sequence = sequence;

@@ -1,6 +1,7 @@
 //! What the cords pull with against weight, and against each other: a specimen at rest is in balance.
 
-use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
+use crate::frame::{Fabric, MeasurementSet, Sequence};
+use crate::kind::Holding;
 use crate::measure::{mean, median};
 use crate::notice::Notice;
 use nalgebra::Vector3;
@@ -110,7 +111,7 @@ pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
         notices.push(Notice::doubt(&sequence.name, place, found, expected));
     };
     for other in &set.sequences {
-        let stretched = matches!(other.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+        let stretched = other.kind.holding() == Holding::Strip;
         if stretched && ratio && Weight::of(&set.fabric, other).is_none() {
             let times = weight.borne / weight.expected();
             let found = format!("a load cell that in {} reads {times:.3} times the weight", first.name);

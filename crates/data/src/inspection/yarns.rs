@@ -1,7 +1,7 @@
 //! Along which yarns a sheet hangs off its table, against the kind of its test.
 
 use super::profile::outward_at_rest;
-use crate::frame::{Fabric, Kind, Sequence, is_seen};
+use crate::frame::{Fabric, Sequence, is_seen};
 use crate::measure::affine_map;
 use crate::notice::Notice;
 use nalgebra::Vector3;
@@ -15,10 +15,11 @@ const FEWEST: usize = 20;
 /// Refuses a test of bending whose sheet hangs along other yarns than its kind says.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(table) = sequence.table else { return };
-    let (name, expected) = match sequence.kind {
-        Kind::BendWeft => ("weft", 0.0),
-        Kind::BendBias => ("the bias", 45.0),
-        _ => ("warp", 90.0),
+    let expected = sequence.kind.degrees_from_weft();
+    let name = match expected {
+        0.0 => "weft",
+        90.0 => "warp",
+        _ => "the bias",
     };
     let Some(angle) = angle_from_weft(sequence, &Vector3::from(table.outward)) else { return };
     if (angle - expected).abs() <= STRAIGHT {

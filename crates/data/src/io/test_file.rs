@@ -4,6 +4,7 @@ use super::source::shown;
 use super::toml_file::{TomlFile, written};
 use crate::error::{Error, Result};
 use crate::frame::{Clip, Kind, Noise, Sequence, Table};
+use crate::kind::Holding;
 use crate::store::write_file;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
@@ -31,7 +32,7 @@ pub(super) struct TestFile {
 
 /// True for the kinds that lie on a table and have no clips.
 pub(super) fn bends(kind: Kind) -> bool {
-    matches!(kind, Kind::BendWeft | Kind::BendWarp | Kind::BendBias)
+    kind.holding() == Holding::Table
 }
 
 /// Reads and checks `test.toml` for a mesh of so many vertices.

@@ -11,7 +11,7 @@ use crate::text;
 use clap::Args;
 use cloth_data::error::Error;
 use cloth_data::frame::{Kind, MeasurementSet};
-use cloth_fit::judge::compare::VALIDATION;
+use cloth_fit::judge::compare::validation_kinds;
 use cloth_fit::judge::validation::validate;
 use cloth_fit::material::check::check_material;
 use cloth_fit::material::file::MaterialFile;
@@ -109,10 +109,10 @@ impl ValidateOptions {
         let has = |kind: &Kind| set.sequences.iter().any(|sequence| sequence.kind == *kind);
         if !self.kinds.is_empty() {
             self.kinds.clone()
-        } else if self.all || !VALIDATION.iter().any(has) {
+        } else if self.all || !validation_kinds().iter().any(has) {
             Kind::ALL.to_vec()
         } else {
-            VALIDATION.to_vec()
+            validation_kinds()
         }
     }
 

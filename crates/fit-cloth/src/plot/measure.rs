@@ -3,11 +3,12 @@
 use super::cycle::{self, Point};
 use super::drawing::Drawn;
 use cloth_data::frame::Kind;
-use cloth_fit::judge::validation::{Measure, MeasureRow};
+use cloth_data::kind::Summary;
+use cloth_fit::judge::validation::MeasureRow;
 
 /// # Errors
 /// No frame.
-pub(super) fn draw(title: &str, kind: Kind, measure: Measure, rows: &[MeasureRow]) -> Drawn<String> {
+pub(super) fn draw(title: &str, kind: Kind, measure: Summary, rows: &[MeasureRow]) -> Drawn<String> {
     let point = |row: &MeasureRow| Point {
         frame: row.frame,
         extension: row.extension,

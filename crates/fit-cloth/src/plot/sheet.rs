@@ -2,6 +2,7 @@
 
 use crate::shown::vector;
 use cloth_data::frame::{Kind, Table};
+use cloth_data::kind::Extension;
 use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::Vector3;
@@ -59,12 +60,10 @@ impl Sheet {
 
     /// A figure's title with this frame.
     pub(super) fn titled(&self, title: &str, kind: Kind) -> String {
-        let extension = match kind {
-            Kind::Shear | Kind::ComplexShear => format!("shear angle {:.3} rad", self.extension),
-            Kind::BendWeft | Kind::BendWarp | Kind::BendBias => {
-                format!("overhang {:.1} mm", 1e3 * self.extension)
-            }
-            _ => format!("extension {:.2} %", 100.0 * self.extension),
+        let extension = match kind.extension() {
+            Extension::ShearAngle => format!("shear angle {:.3} rad", self.extension),
+            Extension::Overhang => format!("overhang {:.1} mm", 1e3 * self.extension),
+            Extension::Elongation => format!("extension {:.2} %", 100.0 * self.extension),
         };
         format!("{title}: frame {}, {extension}", self.frame)
     }

@@ -106,9 +106,7 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
         let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
         let told = String::from_utf8_lossy(&output.stdout).into_owned();
         let shown = |component: Component| {
-            set.sequences
-                .iter()
-                .any(|sequence| cloth_fit::stage::kinds_of(component).contains(&sequence.kind))
+            set.sequences.iter().any(|sequence| sequence.kind.shows().contains(&component))
         };
         let Ok(material) = MaterialFile::read(&folder.path().join("out/material.json")) else {
             return row.holds(false, || format!("{kept:05b}: {:?} {warnings}", output.status.code()));

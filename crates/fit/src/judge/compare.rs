@@ -33,7 +33,9 @@ use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_sim::material::{Component, Model};
 
 /// Tests that no stage fits.
-pub const VALIDATION: [Kind; 2] = [Kind::ComplexShear, Kind::CornerPull];
+pub fn validation_kinds() -> Vec<Kind> {
+    Kind::ALL.into_iter().filter(|kind| kind.shows().is_empty()).collect()
+}
 
 /// The settings of all models and variants, all else as given.
 pub fn contestants(base: &Settings) -> Vec<Settings> {
@@ -96,11 +98,11 @@ fn validation(
     settings: &Settings,
     watch: &Watch<'_>,
 ) -> Result<Option<Prediction>> {
-    let any = set.sequences.iter().any(|sequence| VALIDATION.contains(&sequence.kind));
+    let any = set.sequences.iter().any(|sequence| sequence.kind.shows().is_empty());
     if !any || !report.curves().components().any(Component::is_stretch) {
         return Ok(None);
     }
-    Ok(Some(predict(set, &VALIDATION, report.curves(), &report.assumed(), settings, watch)?))
+    Ok(Some(predict(set, &validation_kinds(), report.curves(), &report.assumed(), settings, watch)?))
 }
 
 fn observed(report: &FitReport) -> impl Iterator<Item = &StageReport> {

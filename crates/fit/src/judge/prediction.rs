@@ -9,6 +9,7 @@ use crate::twin::replica::{Parts, Replica};
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Kind, MeasurementSet, Sequence};
 use cloth_data::inspection::inspect;
+use cloth_data::kind::Holding;
 use cloth_data::notice::Notice;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
@@ -134,9 +135,9 @@ fn parts(
     assumed: &BTreeMap<Component, f64>,
     settings: &Settings,
 ) -> Parts {
-    let stretches = matches!(kind, Kind::StretchWeft | Kind::StretchWarp);
+    let stretches = kind.is_along_yarns();
     let bends = curves.components().chain(assumed.keys().copied()).any(Component::is_bending);
-    let off_table = matches!(kind, Kind::BendWeft | Kind::BendWarp | Kind::BendBias);
+    let off_table = kind.holding() == Holding::Table;
     let takes_part = |component: Component| match component {
         _ if component.is_stretch() => true,
         _ if stretches => false,
@@ -145,7 +146,7 @@ fn parts(
     };
     Parts {
         model: settings.model,
-        flat: kind == Kind::StretchBias || !stretches && !bends,
+        flat: kind.is_on_the_bias() || !stretches && !bends,
         components: Component::ALL.into_iter().filter(|&component| takes_part(component)).collect(),
         areal_density: set.fabric.areal_density_kg_m2,
         nodes: settings.nodes,

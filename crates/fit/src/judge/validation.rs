@@ -9,49 +9,12 @@ use crate::stage::{Settings, Watch};
 use crate::twin::in_place;
 use cloth_data::error::Result;
 use cloth_data::frame::{Kind, MeasurementSet, Sequence};
+use cloth_data::kind::Summary;
 use cloth_data::measure::{Pull, aggregated_torque, clip_centres, pulls, stretching_force_difference};
 use cloth_data::rectangle::rest_normal;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
-
-/// A measure of a whole frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Measure {
-    /// Torque of the clips' forces about the cloth's centre, N·m: tests of shear.
-    AggregatedTorque,
-    /// Difference of the two corner-to-corner forces, N: the corner pull.
-    StretchingForceDifference,
-}
-
-impl Measure {
-    /// The measure of a kind of test; `None` where forces and shapes are compared one by one.
-    pub fn of(kind: Kind) -> Option<Self> {
-        match kind {
-            Kind::Shear | Kind::ComplexShear => Some(Self::AggregatedTorque),
-            Kind::CornerPull => Some(Self::StretchingForceDifference),
-            _ => None,
-        }
-    }
-
-    /// Its unit.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::AggregatedTorque => "N m",
-            Self::StretchingForceDifference => "N",
-        }
-    }
-}
-
-impl std::fmt::Display for Measure {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(match self {
-            Self::AggregatedTorque => "aggregated torque",
-            Self::StretchingForceDifference => "stretching-force difference",
-        })
-    }
-}
 
 /// A measure in one frame.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -74,7 +37,7 @@ pub struct Validated {
     /// Forces and shapes.
     pub report: SequenceReport,
     /// The measure of the whole, where the kind of test has one, and its rows.
-    pub measure: Option<(Measure, Vec<MeasureRow>)>,
+    pub measure: Option<(Summary, Vec<MeasureRow>)>,
 }
 
 impl Validated {
@@ -142,7 +105,7 @@ pub fn validate(
     let prediction = predict(set, kinds, curves, assumed, settings, watch)?;
     let validated = |report: &SequenceReport| {
         let sequence = set.sequences.iter().find(|sequence| sequence.name == report.name);
-        let measure = Measure::of(report.kind).zip(sequence);
+        let measure = report.kind.summary().zip(sequence);
         let rows = measure.map(|(measure, sequence)| (measure, measure_rows(measure, sequence, report)));
         Validated { report: report.clone(), measure: rows.filter(|(_, rows)| !rows.is_empty()) }
     };
@@ -150,7 +113,7 @@ pub fn validate(
 }
 
 /// The measure in every frame in which all clips' forces are known.
-fn measure_rows(measure: Measure, sequence: &Sequence, report: &SequenceReport) -> Vec<MeasureRow> {
+fn measure_rows(measure: Summary, sequence: &Sequence, report: &SequenceReport) -> Vec<MeasureRow> {
     let mut frames: Vec<usize> = report.forces.iter().map(|row| row.frame).collect();
     frames.dedup();
     let row = |frame: usize| {
@@ -169,7 +132,7 @@ fn measure_rows(measure: Measure, sequence: &Sequence, report: &SequenceReport) 
 
 /// The measure of one frame from its force components, measured or simulated, in the world's axes.
 fn measured_whole(
-    measure: Measure,
+    measure: Summary,
     sequence: &Sequence,
     frame: usize,
     rows: &[&ForceRow],
@@ -194,10 +157,10 @@ fn measured_whole(
     }
     let centre = centres.iter().sum::<Vector3<f64>>() / centres.len() as f64;
     match measure {
-        Measure::AggregatedTorque => {
+        Summary::AggregatedTorque => {
             let normal = rest_normal(&in_place(sequence).mesh);
             Some(aggregated_torque(&forces, &centres, &centre, &normal))
         }
-        Measure::StretchingForceDifference => stretching_force_difference(&forces, &centres),
+        Summary::StretchingForceDifference => stretching_force_difference(&forces, &centres),
     }
 }

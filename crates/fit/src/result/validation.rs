@@ -1,12 +1,13 @@
 //! The folder of a validation: `validation.json`, `validation.csv`, `measures.csv`, `forces.csv`.
 
 use super::tables::{cell, force_table};
-use crate::judge::validation::{Measure, MeasureRow, Validated, Validation};
+use crate::judge::validation::{MeasureRow, Validated, Validation};
 use crate::material::file::{MaterialFile, ResidualEntry};
 use crate::stage::Variant;
 use crate::stage::interventions::Interventions;
 use cloth_data::error::Result;
 use cloth_data::frame::MeasurementSet;
+use cloth_data::kind::Summary;
 use cloth_data::notice::Notice;
 use cloth_data::store::write_file;
 use cloth_sim::material::{Component, Model};
@@ -50,7 +51,7 @@ struct Entry<'a> {
 
 #[derive(Serialize)]
 struct Whole<'a> {
-    name: Measure,
+    name: Summary,
     unit: &'static str,
     rms: Option<f64>,
     share_of_range: Option<f64>,
@@ -171,6 +172,6 @@ fn measure_table(validation: &Validation) -> String {
 }
 
 /// A measure's name as in JSON.
-fn key(measure: Measure) -> String {
+fn key(measure: Summary) -> String {
     measure.to_string().replace(' ', "-")
 }

@@ -7,25 +7,9 @@ use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_sim::material::Component;
 
-/// The tests that show a component.
-pub fn kinds_of(component: Component) -> &'static [Kind] {
-    match component {
-        Component::StretchWeft => &[Kind::StretchWeft],
-        Component::StretchWarp => &[Kind::StretchWarp],
-        Component::Shear => &[Kind::Shear, Kind::StretchBias],
-        Component::BendWeft => &[Kind::BendWeft],
-        Component::BendWarp => &[Kind::BendWarp],
-        Component::BendDiagonal => &[Kind::BendWeft, Kind::BendWarp, Kind::BendBias],
-    }
-}
-
 /// The tests that show any of some components, each once.
 pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
-    let mut kinds: Vec<Kind> =
-        components.iter().flat_map(|&component| kinds_of(component)).copied().collect();
-    kinds.sort();
-    kinds.dedup();
-    kinds
+    Kind::ALL.into_iter().filter(|kind| kind.shows().iter().any(|shown| components.contains(shown))).collect()
 }
 
 /// What a stage fits, and on what.
@@ -65,7 +49,7 @@ impl Plan {
             diagonals: settings.diagonals,
             table: settings.table,
             // Strips cut on the bias are pulled taut, and nobody saw them buckle.
-            flat: self.flat || kind == Kind::StretchBias,
+            flat: self.flat || kind.is_on_the_bias(),
         };
         let shows = set.sequences.iter().filter(|sequence| self.kinds.contains(&sequence.kind));
         let replicas = shows.map(|sequence| Replica::new(sequence, &parts(sequence.kind)));

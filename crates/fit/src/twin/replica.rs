@@ -14,6 +14,7 @@ use blend::Blend;
 use clips::Grip;
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{HEIGHT_SEEN, Kind, Phase, Sequence};
+use cloth_data::kind::Holding;
 use cloth_data::rectangle::FLAT_SLOPE;
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::load::Held;
@@ -125,9 +126,9 @@ impl Replica {
     pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
         let sequence = &*in_place(sequence);
         // On the bias the yarns run along the cells' diagonals: triangles without an edge along each would lock.
-        let diagonals = match sequence.kind {
-            Kind::StretchBias if !parts.model.is_of_springs() => Diagonals::Crossed,
-            _ => parts.diagonals,
+        let diagonals = match sequence.kind.is_on_the_bias() && !parts.model.is_of_springs() {
+            true => Diagonals::Crossed,
+            false => parts.diagonals,
         };
         let specimen = Specimen::new(sequence, parts.nodes, diagonals)?;
         check_cells(sequence, &specimen, parts.model)?;
@@ -265,7 +266,7 @@ impl Replica {
         // A sheared sheet that nobody saw may have buckled.
         let leaves_plane = |shape: &Option<Vec<f64>>| match flatness(shape.as_ref(), self.position_noise) {
             Some(flat) => !flat,
-            None => sequence.kind == Kind::Shear,
+            None => sequence.kind.holding() == Holding::PictureFrame,
         };
         self.planar = parts.flat
             || gravity.z.abs() <= FLAT_SLOPE * gravity.norm()

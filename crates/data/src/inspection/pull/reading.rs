@@ -1,7 +1,8 @@
 //! The readings of a strip between two clips: separation and tension, branch by branch.
 
 use crate::branch::numbered;
-use crate::frame::{Clip, Frame, Kind, Sequence};
+use crate::frame::{Clip, Frame, Sequence};
+use crate::kind::Holding;
 use crate::measure::median;
 use crate::notice::{Notice, Severity};
 use crate::rectangle::rest_normal;
@@ -50,7 +51,7 @@ const DRIFT: f64 = 1e-3;
 impl Pull {
     /// The readings of a stretched strip; `None` if it is none, or not between two clips.
     pub(super) fn of(sequence: &Sequence, counted: &str, numbers: &[usize]) -> Option<Self> {
-        let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
+        let stretched = sequence.kind.holding() == Holding::Strip;
         let [first, second] = &sequence.clips[..] else { return None };
         let centre = |clip: &Clip, pose: &Isometry3<f64>| {
             let middle: Vector3<f64> = clip.vertices.iter().map(|&v| sequence.mesh.positions[v]).sum();

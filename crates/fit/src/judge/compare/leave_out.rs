@@ -4,7 +4,7 @@ use super::distance::Distance;
 use crate::incremental::{self, FitReport, Stage};
 use crate::judge::prediction::predict;
 use crate::stage::knowledge::Knowledge;
-use crate::stage::{Settings, Watch, kinds_of};
+use crate::stage::{Settings, Watch};
 use cloth_data::error::Result;
 use cloth_data::frame::{Kind, MeasurementSet, Sequence};
 use cloth_sim::material::Component;
@@ -96,6 +96,6 @@ fn is_shown(set: &MeasurementSet, component: Component, settings: &Settings) -> 
         [[Component::StretchWeft, Component::StretchWarp], [Component::BendWeft, Component::BendWarp]];
     let pair = pairs.iter().find(|pair| settings.variant.is_isotropic() && pair.contains(&component));
     let sharing = pair.map_or(vec![component], |pair| pair.to_vec());
-    let shows = |kind: Kind| sharing.iter().any(|&component| kinds_of(component).contains(&kind));
+    let shows = |kind: Kind| sharing.iter().any(|component| kind.shows().contains(component));
     set.sequences.iter().any(|sequence| shows(sequence.kind))
 }

@@ -4,6 +4,7 @@ use super::force_component::ForceComponent;
 use crate::twin::specimen::Specimen;
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Frame, Kind, Sequence};
+use cloth_data::kind::{Extension, Holding};
 use cloth_data::measure::effective_shear;
 use cloth_data::rectangle::bounds;
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -124,15 +125,15 @@ impl Grip {
     /// How far a test went: the effective shear angle (rad) where bars shear, else the mean relative change of distance
     /// between the clips' centres.
     pub(super) fn extension(&self, kind: Kind, specimen: &Specimen, x: &[f64]) -> f64 {
-        match kind {
-            Kind::Shear | Kind::ComplexShear => {
+        match kind.extension() {
+            Extension::ShearAngle => {
                 let held = || (0..self.group_of.len()).filter(|&node| self.group_of[node].is_some());
                 let material: Vec<_> = held().map(|node| specimen.mesh.material[node]).collect();
                 let now: Vec<_> =
                     held().map(|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3])).collect();
                 effective_shear(&material, &now).map_or(0.0, f64::abs)
             }
-            _ => self.separation(specimen, x),
+            Extension::Elongation | Extension::Overhang => self.separation(specimen, x),
         }
     }
 
@@ -159,9 +160,9 @@ impl Grip {
             let force = specimen.turn(&force);
             // A clip is in balance: cords + its weight = what the cloth pulls with.
             let balanced = force + weight;
-            let directions = match (sequence.force_direction, sequence.kind) {
+            let directions = match (sequence.force_direction, sequence.kind.holding()) {
                 (Some(direction), _) => vec![specimen.turn(&direction)],
-                (None, Kind::Shear) => vec![axes[clip]],
+                (None, Holding::PictureFrame) => vec![axes[clip]],
                 (None, _) if planar => vec![Vector3::x(), Vector3::y()],
                 (None, _) => vec![Vector3::x(), Vector3::y(), Vector3::z()],
             };
