@@ -19,4 +19,5 @@ mod shear;
 mod starts;
 mod strip_faults;
 mod trusted;
+mod unknowns;
 mod whole;

@@ -6,10 +6,9 @@
 //! ```
 
 use cloth_data::frame::{Cord, Kind, MeasurementSet, Noise, Sequence};
-use cloth_fit::equilibria::{Objective, Settled, Simulation, SolveStart, Task};
+use cloth_fit::equilibria::{Objective, Settled, Simulation, SolveStart, Task, Unknowns};
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
 use cloth_fit::twin::replica::Replica;
-use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{Point3, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
@@ -46,15 +45,13 @@ pub fn equilibria<T>(
     let replicas: Vec<Replica> = plan.replicas(&alone, settings).expect("a sequence that can be simulated");
     assert!(!replicas.is_empty(), "{} shows nothing", sequence.name);
     let task = Task {
-        fitted: Vec::new(),
         objective: Objective::Forces,
         known: curves.clone(),
         settings: settings.equilibrium,
         start: SolveStart::LastEquilibrium,
         robust: None,
     };
-    let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).expect("a curve");
-    let mut simulation = Simulation::new(&replicas, task, none, Arc::default());
+    let mut simulation = Simulation::new(&replicas, task, Unknowns::default(), Arc::default());
     let forces = simulation.settle();
     assert!(simulation.dropped().is_empty(), "{:?}", simulation.dropped());
     simulation.settled().zip(&forces).map(|(settled, forces)| read(settled, forces)).collect()

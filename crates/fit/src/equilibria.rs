@@ -14,15 +14,19 @@
 //! Levenberg–Marquardt, too (docs/model.md).
 
 mod meter;
+mod observation;
 mod residual;
 mod simulation;
 mod solve;
 mod state;
 mod task;
+mod unknowns;
 mod whitening;
 
 pub use meter::{Counters, Meter};
+pub use observation::Objective;
 pub(crate) use residual::without_rounding;
 pub use simulation::{DroppedFrame, Settled, Simulation};
 pub(crate) use solve::parameter_columns;
-pub use task::{Objective, SolveStart, Task};
+pub use task::{SolveStart, Task};
+pub use unknowns::{Unknown, Unknowns};

@@ -2,7 +2,6 @@
 
 use super::simulation::Simulation;
 use super::state::FrameResult;
-use super::task::Objective;
 use crate::optimise::gauss_newton::{Evaluation, Residuals};
 use crate::optimise::robust::Robust;
 use crate::twin::replica::{Replica, ReplicaFrame};
@@ -20,21 +19,11 @@ impl Simulation<'_> {
         let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
         let mut index = 0;
         for &(replica, frame) in &self.frames {
-            let frame = &self.replicas[replica].frames[frame];
-            let forces = &frame.forces;
-            match self.task.objective {
-                Objective::Forces => {
-                    for force in forces {
-                        tracks.entry((replica, force.clip, force.number)).or_default().push(index);
-                        index += 1;
-                    }
-                }
-                Objective::Positions => {
-                    for (_, coordinate) in self.replicas[replica].seen_unknowns(frame) {
-                        tracks.entry((replica, coordinate / 3, coordinate % 3)).or_default().push(index);
-                        index += 1;
-                    }
-                }
+            let own = &self.replicas[replica];
+            for observation in self.task.objective.observations(own, &own.frames[frame]) {
+                let [of, number] = observation.source();
+                tracks.entry((replica, of, number)).or_default().push(index);
+                index += 1;
             }
         }
         tracks.into_values().collect()
@@ -45,7 +34,7 @@ impl Simulation<'_> {
     ///
     /// * `groups` — components that share a curve, a group each
     pub fn sensitivity_to(&self, groups: &[Vec<Component>]) -> DMatrix<f64> {
-        let curves = self.curves(&self.curve);
+        let curves = self.curves();
         let results = self.solve_frames(&curves, groups, None);
         let columns: usize =
             groups.iter().map(|group| curves.get(group[0]).map_or(0, StiffnessCurve::len)).sum();
@@ -59,10 +48,7 @@ impl Simulation<'_> {
     }
 
     pub(super) fn noise(&self, replica: &Replica) -> Option<f64> {
-        match self.task.objective {
-            Objective::Forces => replica.force_noise,
-            Objective::Positions => replica.position_noise,
-        }
+        self.task.objective.noise(replica)
     }
 
     /// What the residuals of a replica are divided by.
@@ -70,24 +56,8 @@ impl Simulation<'_> {
         self.noise(replica).filter(|_| self.noise_is_known()).unwrap_or(1.0)
     }
 
-    /// What each measurement of a frame is divided by.
-    pub(super) fn scales<'s>(
-        &'s self,
-        replica: &'s Replica,
-        frame: &'s ReplicaFrame,
-    ) -> impl Iterator<Item = f64> + 's {
-        let scale = self.scale(replica);
-        let forces = frame.forces.iter().map(|_| 1.0);
-        let positions = replica.seen_unknowns(frame).map(|(_, coordinate)| replica.spread[coordinate / 3]);
-        let by_forces = self.task.objective == Objective::Forces;
-        forces
-            .filter(move |_| by_forces)
-            .chain(positions.filter(move |_| !by_forces))
-            .map(move |share| share * scale)
-    }
-
     pub(super) fn typical_residual(&self) -> f64 {
-        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
+        let results = self.solve_frames(&self.curves(), &[], None);
         let mut sizes: Vec<f64> = Vec::new();
         // A frame without an equilibrium has no residuals.
         let balanced =
@@ -109,11 +79,11 @@ impl Simulation<'_> {
         result: &FrameResult,
         points: usize,
     ) -> DMatrix<f64> {
-        let scales: Vec<f64> = self.scales(replica, frame).collect();
-        let mut rows = DMatrix::zeros(scales.len(), points + 1);
-        let measured = measured(replica, frame, self.task.objective);
-        for (i, scale) in scales.iter().enumerate() {
-            rows[(i, 0)] = (measured[i] - result.simulated[i]) / scale;
+        let observations = self.task.objective.observations(replica, frame);
+        let mut rows = DMatrix::zeros(observations.len(), points + 1);
+        for (i, observation) in observations.iter().enumerate() {
+            let scale = observation.spread * self.scale(replica);
+            rows[(i, 0)] = (observation.measured - result.simulated[i]) / scale;
             (0..points).for_each(|k| rows[(i, k + 1)] = result.derivatives[i * points + k] / scale);
         }
         if let Some(whitening) = &result.state.whitening {
@@ -140,13 +110,13 @@ impl Residuals for Simulation<'_> {
     /// Residuals of all measurements, frame by frame, in units of the noise where that is known, else N or m.
     fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
         let failed = |reason: String| Ok(Evaluation::Failed { reason });
-        let curve = match self.curve.with_stiffnesses(point.iter().copied().collect()) {
-            Ok(curve) => curve,
+        let unknowns = match self.unknowns.with_values(point) {
+            Ok(unknowns) => unknowns,
             Err(error) => return failed(error.to_string()),
         };
-        let change = point - DVector::from_column_slice(self.curve.stiffnesses());
-        let groups = [self.task.fitted.clone()];
-        let results = self.solve_frames(&self.curves(&curve), &groups, Some(&change));
+        let change = point - self.unknowns.values();
+        let curves = unknowns.beside(&self.task.known);
+        let results = self.solve_frames(&curves, &unknowns.groups(), Some(&change));
         if let Some(index) = results.iter().position(|result| result.status != Status::Converged) {
             let (replica, frame) = self.frames[index];
             let replica = &self.replicas[replica];
@@ -166,7 +136,7 @@ impl Residuals for Simulation<'_> {
         }
         let rows = residual.len();
         self.states = results.into_iter().map(|result| result.state).collect();
-        self.curve = curve;
+        self.unknowns = unknowns;
         Ok(Evaluation::Values {
             residual: DVector::from_vec(residual),
             jacobian: Some(without_rounding(DMatrix::from_row_slice(rows, point.len(), &derivatives))),
@@ -190,17 +160,6 @@ pub(crate) fn without_rounding(mut jacobian: DMatrix<f64>) -> DMatrix<f64> {
     let rounding = jacobian.row_iter_mut().filter(|row| row.norm() <= UNMOVED * longest);
     rounding.for_each(|mut row| row.fill(0.0));
     jacobian
-}
-
-/// What was measured of what is compared.
-fn measured(replica: &Replica, frame: &ReplicaFrame, objective: Objective) -> Vec<f64> {
-    match (objective, &frame.observed) {
-        (Objective::Forces, _) => frame.forces.iter().map(|component| component.force).collect(),
-        (Objective::Positions, Some(observed)) => {
-            replica.seen_unknowns(frame).map(|(_, coordinate)| observed[coordinate]).collect()
-        }
-        (Objective::Positions, None) => Vec::new(),
-    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! The frames of one stage under an unknown curve.
+//! The frames of one stage under unknown curves.
 
 use super::meter::Meter;
 use super::state::{State, start_state};
 use super::task::Task;
+use super::unknowns::{Unknown, Unknowns};
 use crate::optimise::robust::Robust;
 use crate::twin::replica::{Replica, ReplicaFrame};
-use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::{Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use rayon::prelude::*;
@@ -42,13 +42,13 @@ const BRIDGED: f64 = 2.0;
 
 pub(super) type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
 
-/// A stage's replicas under one unknown curve.
+/// A stage's replicas under unknown curves.
 pub struct Simulation<'a> {
     pub(super) replicas: &'a [Replica],
     /// Per replica, per cloth.
     pub(super) solvers: Vec<Vec<SolverPool<'a>>>,
     pub(super) task: Task,
-    pub(super) curve: StiffnessCurve,
+    pub(super) unknowns: Unknowns,
     /// (replica, frame) of every frame in use.
     pub(super) frames: Vec<(usize, usize)>,
     pub(super) states: Vec<State>,
@@ -59,15 +59,15 @@ pub struct Simulation<'a> {
 impl<'a> Simulation<'a> {
     /// Finds the first equilibria, and drops the frames that have none.
     ///
-    /// * `curve` — the curve to start from; its strains are the control points that are fitted
-    pub fn new(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
-        let mut simulation = Self::unsettled(replicas, task, curve, meter);
+    /// * `unknowns` — the curves to start from; their strains are the control points that are fitted
+    pub fn new(replicas: &'a [Replica], task: Task, unknowns: Unknowns, meter: Arc<Meter>) -> Self {
+        let mut simulation = Self::unsettled(replicas, task, unknowns, meter);
         simulation.settle();
         simulation
     }
 
     /// All frames where they would start, none in equilibrium yet.
-    pub fn unsettled(replicas: &'a [Replica], task: Task, curve: StiffnessCurve, meter: Arc<Meter>) -> Self {
+    pub fn unsettled(replicas: &'a [Replica], task: Task, unknowns: Unknowns, meter: Arc<Meter>) -> Self {
         let frames: Vec<(usize, usize)> = replicas
             .iter()
             .enumerate()
@@ -78,13 +78,13 @@ impl<'a> Simulation<'a> {
             replicas,
             solvers: replicas.iter().map(pools).collect(),
             task,
-            curve,
+            unknowns,
             states: Vec::new(),
             frames,
             dropped: Vec::new(),
             meter,
         };
-        let curves = simulation.curves(&simulation.curve);
+        let curves = simulation.curves();
         simulation.states = simulation
             .frames
             .par_iter()
@@ -104,8 +104,8 @@ impl<'a> Simulation<'a> {
     }
 
     /// Goes on with other control points; states stay.
-    pub fn set_curve(&mut self, curve: StiffnessCurve) {
-        self.curve = curve;
+    pub fn set_unknowns(&mut self, unknowns: Unknowns) {
+        self.unknowns = unknowns;
         // Sensitivities belong to the old control values.
         self.states.iter_mut().for_each(|state| state.sensitivity.clear());
         self.states.iter_mut().for_each(|state| state.whitening = None);
@@ -116,14 +116,14 @@ impl<'a> Simulation<'a> {
         self.states.iter().any(|state| state.whitening.is_some())
     }
 
-    /// The curve of the last evaluation.
-    pub fn curve(&self) -> &StiffnessCurve {
-        &self.curve
+    /// The unknowns at the last evaluation.
+    pub fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
     }
 
     /// Number of measurements that are compared, over all frames in use.
     pub fn measurements(&self) -> usize {
-        self.settled().map(|s| self.scales(s.replica, s.frame).count()).sum()
+        self.settled().map(|s| self.task.objective.observations(s.replica, s.frame).len()).sum()
     }
 
     /// True if the noise of every sequence is known: residuals then are in units of it.
@@ -161,7 +161,7 @@ impl<'a> Simulation<'a> {
     /// Brings all frames to equilibrium under the curve, and returns the simulated forces along the measured components of
     /// each, N. Frames that have none are dropped.
     pub fn settle(&mut self) -> Vec<Vec<f64>> {
-        let results = self.solve_frames(&self.curves(&self.curve), &[], None);
+        let results = self.solve_frames(&self.curves(), &[], None);
         let mut forces = Vec::new();
         self.states.clear();
         for ((replica, frame), result) in std::mem::take(&mut self.frames).into_iter().zip(results) {
@@ -178,26 +178,26 @@ impl<'a> Simulation<'a> {
         forces
     }
 
-    /// The range of the fitted components' strains over all states, from the 1st to the 99th percentile; of their size where
-    /// the curve is odd, so that either way tells of it alike.
+    /// The range of an unknown curve's strains over all states, from the 1st to the 99th percentile; of their size where the
+    /// curve is odd, so that either way tells of it alike.
     ///
     /// It starts at rest, where stress is known without a measurement, if the gap from there is about as wide as those
     /// between frames.
-    pub fn visited(&self) -> [f64; 2] {
-        let mut strains: Vec<f64> = self.strains().into_iter().map(|[strain, _]| strain).collect();
+    pub fn visited(&self, unknown: &Unknown) -> [f64; 2] {
+        let mut strains: Vec<f64> = self.strains(unknown).into_iter().map(|[strain, _]| strain).collect();
         strains.sort_by(f64::total_cmp);
         let percentile = |share: f64| {
             let place = share * strains.len().saturating_sub(1) as f64;
             strains.get(place.round() as usize).copied().unwrap_or(0.0)
         };
         let [low, high] = [percentile(0.01), percentile(0.99)];
-        [if low > BRIDGED * self.widest_gap() { low } else { low.min(0.0) }, high.max(0.0)]
+        [if low > BRIDGED * self.widest_gap(unknown) { low } else { low.min(0.0) }, high.max(0.0)]
     }
 
     /// The widest gap between the mean strains of frames that follow one another in strain.
-    fn widest_gap(&self) -> f64 {
+    fn widest_gap(&self, unknown: &Unknown) -> f64 {
         let of_frame = |s: Settled<'_>| {
-            let strains: Vec<f64> = self.sized_strains(&s).map(|[strain, _]| strain).collect();
+            let strains: Vec<f64> = sized_strains(&s, unknown).map(|[strain, _]| strain).collect();
             strains.iter().sum::<f64>() / strains.len().max(1) as f64
         };
         let mut means: Vec<f64> = self.settled().map(of_frame).collect();
@@ -205,22 +205,15 @@ impl<'a> Simulation<'a> {
         means.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
     }
 
-    /// The fitted components' strains over all states, each with the area, m², that it stands for; where the curve is odd,
-    /// their sizes.
-    pub fn strains(&self) -> Vec<[f64; 2]> {
-        self.settled().flat_map(|s| self.sized_strains(&s).collect::<Vec<_>>()).collect()
+    /// An unknown curve's strains over all states, each with the area, m², that it stands for; where the curve is odd, their
+    /// sizes.
+    pub fn strains(&self, unknown: &Unknown) -> Vec<[f64; 2]> {
+        self.settled().flat_map(|s| sized_strains(&s, unknown).collect::<Vec<_>>()).collect()
     }
 
-    fn sized_strains(&self, settled: &Settled<'_>) -> impl Iterator<Item = [f64; 2]> {
-        let odd = self.task.fitted.iter().all(|component| !component.is_stretch());
-        let sized = move |[strain, area]: [f64; 2]| [if odd { strain.abs() } else { strain }, area];
-        let Settled { replica, frame, x, .. } = *settled;
-        self.task.fitted.iter().flat_map(move |&c| replica.cloth(frame).strains(c, x)).map(sized)
-    }
-
-    /// The largest strain that control points should reach.
-    pub fn reach(&self) -> f64 {
-        self.visited()[1].max(f64::MIN_POSITIVE)
+    /// The largest strain that an unknown curve's control points should reach.
+    pub fn reach(&self, unknown: &Unknown) -> f64 {
+        self.visited(unknown)[1].max(f64::MIN_POSITIVE)
     }
 
     /// Vertices that were seen too far off a table's lines, over all frames.
@@ -231,7 +224,7 @@ impl<'a> Simulation<'a> {
     /// Of every component, the share of the sheet over all states that is strained beyond its curve's last control point;
     /// those of which none is are left out.
     pub fn extrapolated(&self) -> BTreeMap<Component, f64> {
-        let curves = self.curves(&self.curve);
+        let curves = self.curves();
         let share = |component| {
             let (sum, frames) = self.settled().fold((0.0, 0), |(sum, frames), s| {
                 (sum + s.replica.cloth(s.frame).extrapolated(&curves, component, s.x), frames + 1)
@@ -241,9 +234,14 @@ impl<'a> Simulation<'a> {
         curves.components().map(share).filter(|(_, share)| *share > 0.0).collect()
     }
 
-    pub(super) fn curves(&self, curve: &StiffnessCurve) -> Curves {
-        let mut curves = self.task.known.clone();
-        self.task.fitted.iter().for_each(|&component| curves.set(component, curve.clone()));
-        curves
+    pub(super) fn curves(&self) -> Curves {
+        self.unknowns.beside(&self.task.known)
     }
+}
+
+fn sized_strains(settled: &Settled<'_>, unknown: &Unknown) -> impl Iterator<Item = [f64; 2]> {
+    let odd = unknown.is_odd();
+    let sized = move |[strain, area]: [f64; 2]| [if odd { strain.abs() } else { strain }, area];
+    let Settled { replica, frame, x, .. } = *settled;
+    unknown.components.iter().flat_map(move |&c| replica.cloth(frame).strains(c, x)).map(sized)
 }

@@ -1,15 +1,16 @@
 //! One frame in equilibrium: where its solve starts, how it falls back, and what the solution's factor tells.
 
+use super::observation::{Balance, Objective, Observation};
 use super::simulation::{Simulation, SolverPool};
 use super::state::{FrameResult, State, measured_shape};
-use super::task::{Objective, SolveStart};
+use super::task::SolveStart;
 use super::whitening::Whitening;
 use crate::twin::replica::{Replica, ReplicaFrame};
 use cloth_sim::cloth::Cloth;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::Solver;
 use cloth_sim::material::{Component, Curves};
-use nalgebra::{DVector, Vector3};
+use nalgebra::DVector;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -123,20 +124,17 @@ impl<'a> Simulation<'a> {
             slopes.iter_mut().for_each(|force| *force = -*force);
         }
         solver.solve_linear(&mut sensitivity);
-        match self.task.objective {
-            Objective::Forces => {
-                result.simulated = result.forces.clone();
-                result.derivatives = force_derivatives(solver, cloth, frame, &columns, &sensitivity);
-            }
-            Objective::Positions => {
-                result.simulated = replica.seen_unknowns(frame).map(|(_, c)| x[c]).collect();
-                let seen = replica.seen_unknowns(frame).map(|(unknown, _)| unknown);
-                let row = |unknown| (0..columns.len()).map(move |k| k * unknowns + unknown);
-                result.derivatives = seen.flat_map(row).map(|place| sensitivity[place]).collect();
-                if result.state.whitening.is_none() && replica.held_spread > 0.0 {
-                    result.state.whitening = Some(Arc::new(Whitening::of_table(solver, replica, frame)));
-                }
-            }
+        let balance = Balance::new(solver, cloth, frame, x, &clip_forces, &columns, &sensitivity);
+        let observations = self.task.objective.observations(replica, frame);
+        result.simulated = observations.iter().map(|observation| observation.simulated(&balance)).collect();
+        let row = |observation: &Observation| -> Vec<f64> {
+            (0..columns.len()).map(|value| observation.derivative(&balance, value)).collect()
+        };
+        result.derivatives = observations.iter().flat_map(row).collect();
+        // Only shapes feel where a table holds the sheet.
+        let errs = self.task.objective == Objective::Positions && replica.held_spread > 0.0;
+        if errs && result.state.whitening.is_none() {
+            result.state.whitening = Some(Arc::new(Whitening::of_table(solver, replica, frame)));
         }
         result.state.sensitivity = sensitivity;
     }
@@ -145,7 +143,7 @@ impl<'a> Simulation<'a> {
     /// before. A frame that so comes to another shape than from its measured one has several equilibria, and is flagged;
     /// one that cannot be followed starts from its measured shape.
     pub fn follow(&mut self) {
-        let curves = self.curves(&self.curve);
+        let curves = self.curves();
         let followed: Vec<Vec<(usize, State)>> =
             (0..self.replicas.len()).into_par_iter().map(|replica| self.followed(replica, &curves)).collect();
         for (place, state) in followed.into_iter().flatten() {
@@ -221,30 +219,4 @@ pub(crate) fn parameter_columns(
         }
     }
     columns
-}
-
-/// Derivatives of the measured force components, component by component: direct, and through the shape.
-fn force_derivatives(
-    solver: &Solver<'_>,
-    cloth: &Cloth,
-    frame: &ReplicaFrame,
-    columns: &[Vec<f64>],
-    sensitivity: &[f64],
-) -> Vec<f64> {
-    let unknowns = cloth.unknowns();
-    let border = solver.border();
-    let slopes: Vec<Vec<Vector3<f64>>> = columns
-        .iter()
-        .zip(sensitivity.chunks_exact(unknowns.max(1)))
-        .map(|(column, dx)| {
-            let through_shape = |row: usize| -> f64 {
-                border[row * unknowns..(row + 1) * unknowns].iter().zip(dx).map(|(a, b)| a * b).sum()
-            };
-            let direct = cloth.clip_forces(column).into_iter().enumerate();
-            direct
-                .map(|(group, direct)| direct + Vector3::from_fn(|i, _| through_shape(3 * group + i)))
-                .collect()
-        })
-        .collect();
-    frame.forces.iter().flat_map(|component| slopes.iter().map(|groups| component.of(groups))).collect()
 }

@@ -14,7 +14,7 @@ pub(super) struct State {
     pub(super) sensitivity: Vec<f64>,
     /// An unstable equilibrium was met and left: others may exist.
     pub(super) escaped: bool,
-    /// How errors of what is held enter; taken anew by [`Simulation::set_curve`] and else kept, so that what is minimised
+    /// How errors of what is held enter; taken anew by [`Simulation::set_unknowns`] and else kept, so that what is minimised
     /// is one function.
     pub(super) whitening: Option<Arc<Whitening>>,
 }

@@ -1,18 +1,9 @@
 //! What is simulated and compared, and how.
 
+use super::observation::Objective;
 use crate::optimise::robust::Robust;
 use cloth_sim::equilibrium::Settings;
-use cloth_sim::material::{Component, Curves};
-use serde::{Deserialize, Serialize};
-
-/// What a stage compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Objective {
-    /// The measured components of clip forces, N.
-    Forces,
-    /// The places of the free nodes that were seen, m.
-    Positions,
-}
+use cloth_sim::material::Curves;
 
 /// Where the equilibria of the outer loop start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,11 +21,9 @@ pub enum SolveStart {
 /// What is simulated, and how.
 #[derive(Debug, Clone)]
 pub struct Task {
-    /// The components that share the fitted curve.
-    pub fitted: Vec<Component>,
     /// What is compared.
     pub objective: Objective,
-    /// The curves of the other components.
+    /// The curves of the components that are not unknown.
     pub known: Curves,
     /// How equilibria are found.
     pub settings: Settings,

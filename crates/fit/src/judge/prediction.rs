@@ -1,6 +1,6 @@
 //! How known curves meet tests, whatever they were fitted to.
 
-use crate::equilibria::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task};
+use crate::equilibria::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task, Unknowns};
 use crate::stage::interventions::Interventions;
 use crate::stage::report::SequenceReport;
 use crate::stage::sequence_reports;
@@ -11,7 +11,7 @@ use cloth_data::frame::{Kind, MeasurementSet, Sequence};
 use cloth_data::inspection::inspect;
 use cloth_data::kind::Holding;
 use cloth_data::notice::Notice;
-use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
+use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -68,15 +68,14 @@ pub fn predict(
     let unknown = Component::ALL.into_iter().filter(|&component| curves.get(component).is_none());
     let unknown: Vec<Component> = unknown.filter(takes_part).collect();
     let task = Task {
-        fitted: Vec::new(),
         objective: Objective::Forces,
         known: completed(curves, &unknown, assumed, &replicas, settings)?,
         settings: settings.equilibrium,
         start: SolveStart::LastEquilibrium,
         robust: None,
     };
-    let none = StiffnessCurve::constant(0.0, NegativeStrain::Odd).map_err(mechanics)?;
-    let mut simulation = Simulation::unsettled(&replicas, task, none, Arc::clone(&watch.meter));
+    let mut simulation =
+        Simulation::unsettled(&replicas, task, Unknowns::default(), Arc::clone(&watch.meter));
     simulation.follow();
     let forces = simulation.settle();
     let counters = watch.meter.read().since(&spent_before);

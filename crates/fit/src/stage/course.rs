@@ -9,7 +9,7 @@ use super::settings::Settings;
 use super::start::{Start, start};
 use super::summary::{curve_report, sequence_reports};
 use super::watch::Watch;
-use crate::equilibria::{Objective, Simulation, Task};
+use crate::equilibria::{Objective, Simulation, Task, Unknowns};
 use crate::optimise::gauss_newton::Outcome;
 use crate::optimise::uncertainty::{Covariance, Scatter};
 use crate::twin::replica::Replica;
@@ -46,11 +46,12 @@ pub fn fit(
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
     let constant = StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?;
     let first = before.clone().unwrap_or(constant);
-    let mut simulation = simulate(plan, &replicas, known, first, settings, watch)?;
+    let unknowns = Unknowns::one(&plan.fitted, first);
+    let mut simulation = simulate(plan, &replicas, known, unknowns, settings, watch)?;
     let dropped = simulation.dropped().len();
     let growth = match &before {
-        Some(_) => refit(&mut simulation, settings, 1e-3 * largest, watch),
-        None => grow(&mut simulation, settings, 1e-3 * largest, watch),
+        Some(_) => refit(&mut simulation, settings, &[1e-3 * largest], watch),
+        None => grow(&mut simulation, settings, &[1e-3 * largest], watch),
     };
     let growth = growth.map_err(mechanics(plan))?;
     if growth.outcome.residual.is_empty() {
@@ -59,12 +60,15 @@ pub fn fit(
     }
     let tracks = simulation.tracks();
     // The last trial may have been a step that was rejected.
-    simulation.set_curve(growth.curve.clone());
+    simulation.set_unknowns(growth.unknowns.clone());
+    // A stage has one.
+    let Some(unknown) = growth.unknowns.iter().next().cloned() else { return Ok(None) };
+    let curve = &unknown.curve;
     let forces = simulation.settle();
     let complete = simulation.dropped().len() == dropped;
     let others = knowledge.without(&plan.fitted);
-    let mut judgement = judge(plan, &simulation, &growth, &tracks, &others, complete);
-    if let Some(apart) = before.and_then(|first| ignorance(plan, &assumed, &first, &growth.curve)) {
+    let mut judgement = judge(plan, &simulation, &growth, curve, &tracks, &others, complete);
+    if let Some(apart) = before.and_then(|first| ignorance(plan, &assumed, &first, curve)) {
         judgement.covariance.widen(&apart);
     }
     let Judgement { scatter, covariance, gain, observed } = &judgement;
@@ -73,7 +77,7 @@ pub fn fit(
     // What a first pass made of a curve that is not observed was no knowledge either.
     *knowledge = others.clone();
     if *observed {
-        knowledge.learn(&plan.fitted, &growth.curve, &covariance.matrix, uncertain, gain);
+        knowledge.learn(&plan.fitted, curve, &covariance.matrix, uncertain, gain);
     }
     let basis = Basis {
         carried: others.groups(uncertain).into_iter().flatten().collect(),
@@ -93,7 +97,7 @@ pub fn fit(
         variant: settings.variant,
         objective: plan.objective,
         basis,
-        curve: curve_report(&simulation, growth, covariance, *observed),
+        curve: curve_report(&simulation, unknown, growth, covariance, *observed),
         scatter: scatter.times(simulation.unit()),
         sequences: sequence_reports(&simulation, &forces),
         dropped: simulation.dropped().to_vec(),
@@ -130,24 +134,23 @@ fn ignorance(
     unknown.then(|| DVector::from_iterator(curve.len(), apart))
 }
 
-/// All frames in equilibrium under the first curve.
+/// All frames in equilibrium under the first curves.
 fn simulate<'r>(
     plan: &Plan,
     replicas: &'r [Replica],
     known: Curves,
-    first: StiffnessCurve,
+    unknowns: Unknowns,
     settings: &Settings,
     watch: &Watch<'_>,
 ) -> Result<Simulation<'r>> {
     let task = Task {
-        fitted: plan.fitted.clone(),
         objective: plan.objective,
         known,
         settings: settings.equilibrium,
         start: settings.solve_start,
         robust: None,
     };
-    let simulation = Simulation::new(replicas, task, first, Arc::clone(&watch.meter));
+    let simulation = Simulation::new(replicas, task, unknowns, Arc::clone(&watch.meter));
     if simulation.settled().next().is_none() {
         let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
         return Err(unfit(
@@ -180,6 +183,7 @@ fn judge(
     plan: &Plan,
     simulation: &Simulation<'_>,
     growth: &Growth,
+    curve: &StiffnessCurve,
     tracks: &[Vec<usize>],
     others: &Knowledge,
     complete: bool,
@@ -190,10 +194,10 @@ fn judge(
         expected: simulation.task().robust.map_or(1.0, |robust| robust.mean_of_noise()),
         ..Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), tracks, noise)
     };
-    let observed = is_observed(plan, growth, &scatter, others);
+    let observed = is_observed(plan, growth, curve, &scatter, others);
     let mut covariance = Covariance::new(jacobian, &scatter);
     let groups = others.groups(&plan.components);
-    let mut gain = DMatrix::zeros(growth.curve.len(), 0);
+    let mut gain = DMatrix::zeros(curve.len(), 0);
     if complete && !groups.is_empty() {
         gain = covariance.gain(jacobian, &simulation.sensitivity_to(&groups));
         covariance.carry(&gain, &others.covariance(&plan.components));
@@ -204,15 +208,20 @@ fn judge(
 /// True if the measurements tell the curve's scale: a curve twice as stiff would stand out from the noise, and from half of
 /// what the curve cannot meet anyway. A curve far below what is known of the other bending is taken to be as large as that:
 /// that it is so soft is knowledge too. What earlier stages do not know is not counted.
-fn is_observed(plan: &Plan, growth: &Growth, scatter: &Scatter, knowledge: &Knowledge) -> bool {
+fn is_observed(
+    plan: &Plan,
+    growth: &Growth,
+    curve: &StiffnessCurve,
+    scatter: &Scatter,
+    knowledge: &Knowledge,
+) -> bool {
     let others = [Component::BendWeft, Component::BendWarp];
     let bends = plan.fitted[0].is_bending();
     let usual = others.iter().filter_map(|&component| knowledge.curves().get(component));
     let usual = usual.flat_map(|curve| curve.stiffnesses().iter().copied());
     let reference = usual.filter(|_| bends).fold(f64::MAX, f64::min);
     let floor = if reference < f64::MAX { reference } else { 0.0 };
-    let size =
-        DVector::from_iterator(growth.curve.len(), growth.curve.stiffnesses().iter().map(|k| k.max(floor)));
+    let size = DVector::from_iterator(curve.len(), curve.stiffnesses().iter().map(|k| k.max(floor)));
     let signal = (&growth.outcome.jacobian * size).norm();
     let misfit = 0.5 * scatter.misfit * (scatter.measurements as f64).sqrt();
     signal > (2.0 * scatter.noise).hypot(misfit)

@@ -1,4 +1,4 @@
-//! A curve grows: one control point, then twice as many segments each time, as long as that pays.
+//! Curves grow: one control point each, then twice as many segments each time, as long as that pays.
 //!
 //! A number of points that does not pay is passed over once: what bends down and up again, as many knits do, is met by
 //! a line no better than by a constant, but by three or five points. Two in a row that do not pay are the end.
@@ -9,7 +9,7 @@ use super::growth_rule::SIGNIFICANT;
 use super::level::Level;
 use super::settings::{Constraints, Settings};
 use super::watch::{Event, Watch};
-use crate::equilibria::{Objective, Simulation};
+use crate::equilibria::{Objective, Simulation, Unknown, Unknowns};
 use crate::optimise::gauss_newton::{Domain, Iteration, Outcome, minimise};
 use crate::optimise::uncertainty::{Covariance, variance_left};
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
@@ -25,10 +25,10 @@ const ROUNDING: f64 = 1e-12;
 const SETTLED: f64 = 1e-5;
 const MOST_WHITENINGS: usize = 4;
 
-/// A curve that was grown.
+/// Curves that were grown.
 pub struct Growth {
-    /// The curve.
-    pub curve: StiffnessCurve,
+    /// The curves.
+    pub unknowns: Unknowns,
     /// The fit with its control points.
     pub outcome: Outcome,
     /// Its constraints.
@@ -43,16 +43,16 @@ pub struct Growth {
 /// wander: ring-2 springs that lean on softer yarns.
 const FELT: f64 = 0.1;
 
-/// Fits with more and more control points, from the simulation's curve on.
+/// Fits with more and more control points, from the simulation's curves on.
 ///
-/// * `lowest_tangent` — dσ/dε is kept above it, N/m
+/// * `lowest_tangents` — dσ/dε of each unknown curve is kept above it, N/m
 ///
 /// # Errors
 /// Control points that make no curve.
 pub fn grow(
     simulation: &mut Simulation<'_>,
     settings: &Settings,
-    lowest_tangent: f64,
+    lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
 ) -> Result<Growth> {
     // A curve with as many points as there are frames meets them all and says nothing; without a known noise one frame
@@ -62,40 +62,43 @@ pub fn grow(
         Objective::Forces => simulation.settled().count(),
         Objective::Positions => simulation.measurements(),
     };
-    let most = settings.most_points().min(carriers.saturating_sub(spare)).max(1);
+    let curves = simulation.unknowns().iter().count().max(1);
+    let most = settings.most_points().min(carriers.saturating_sub(spare) / curves).max(1);
     let mut levels = Vec::new();
-    let mut kept: Option<(StiffnessCurve, Outcome, Domain)> = None;
+    let mut kept: Option<(Unknowns, Outcome, Domain)> = None;
     let rule = settings.growth;
-    let mut curve = simulation.curve().clone();
+    let mut unknowns = simulation.unknowns().clone();
     let mut tries = 0;
     loop {
-        let points = curve.len();
-        let (outcome, domain, level) = fit_level(simulation, &curve, 1, settings, lowest_tangent, watch)?;
+        let points = points_of(&unknowns);
+        let (outcome, domain, level) = fit_level(simulation, &unknowns, 1, settings, lowest_tangents, watch)?;
         levels.push(level);
-        curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
+        unknowns = unknowns.with_values(&outcome.point)?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
         if points == 1 && !felt {
             let stopped = "one stiffness hardly changes what is compared".to_string();
-            return Ok(Growth { curve, outcome, domain, levels, stopped });
+            return Ok(Growth { unknowns, outcome, domain, levels, stopped });
         }
         let all = points >= most;
-        let noise = variance_left(&outcome.residual, points, simulation.noise_is_known());
+        let noise = variance_left(&outcome.residual, unknowns.len(), simulation.noise_is_known());
         let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
         // Points that the data do not tell apart fit noise: they must gain what chance does not give so many.
-        let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
+        let told_apart = Covariance::rank_of(&outcome.jacobian) == unknowns.len();
         let by_chance = |added: usize| 0.5 * added as f64 * SIGNIFICANT * noise;
         let pays = |before: f64, after: f64, added: usize| {
             rule.pays(before.max(rounding), after.max(rounding), noise)
                 && (told_apart || before - after > by_chance(added))
         };
         let best = match kept {
-            Some(best) if !pays(best.1.sum_of_squares, outcome.sum_of_squares, points - best.0.len()) => {
+            Some(best)
+                if !pays(best.1.sum_of_squares, outcome.sum_of_squares, unknowns.len() - best.0.len()) =>
+            {
                 tries += 1;
                 best
             }
             _ => {
                 tries = 0;
-                (curve.clone(), outcome, domain)
+                (unknowns.clone(), outcome, domain)
             }
         };
         if all || tries == rule.tries {
@@ -112,40 +115,40 @@ pub fn grow(
                     100.0 * rule.gain
                 ),
             };
-            let (mut curve, mut outcome, domain) = best;
+            let (mut unknowns, mut outcome, domain) = best;
             if simulation.is_whitened() {
                 let (settled, _, level) =
-                    fit_level(simulation, &curve, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
+                    fit_level(simulation, &unknowns, MOST_WHITENINGS, settings, lowest_tangents, watch)?;
                 if !settled.residual.is_empty() {
-                    curve = curve.with_stiffnesses(settled.point.iter().copied().collect())?;
+                    unknowns = unknowns.with_values(&settled.point)?;
                     outcome = settled;
-                    levels.iter_mut().filter(|l| l.points == curve.len()).for_each(|l| l.go_on(&level));
+                    levels.iter_mut().filter(|l| l.points == level.points).for_each(|l| l.go_on(&level));
                 }
             }
-            return Ok(Growth { curve, outcome, domain, levels, stopped });
+            return Ok(Growth { unknowns, outcome, domain, levels, stopped });
         }
         kept = Some(best);
-        curve = curve.resampled(next_points(points, most), simulation.reach())?;
+        unknowns = resampled(simulation, &unknowns, next_points(points, most))?;
     }
 }
 
-/// Fits again with as many control points as the simulation's curve has, spread over what is visited now.
+/// Fits again with as many control points as the simulation's curves have, spread over what is visited now.
 ///
 /// # Errors
 /// Control points that make no curve.
 pub fn refit(
     simulation: &mut Simulation<'_>,
     settings: &Settings,
-    lowest_tangent: f64,
+    lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
 ) -> Result<Growth> {
-    let points = simulation.curve().len();
-    let start = simulation.curve().resampled(points, simulation.reach())?;
+    let points = points_of(simulation.unknowns());
+    let start = resampled(simulation, simulation.unknowns(), points)?;
     let (outcome, domain, level) =
-        fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
-    let curve = start.with_stiffnesses(outcome.point.iter().copied().collect())?;
+        fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangents, watch)?;
+    let unknowns = start.with_values(&outcome.point)?;
     let stopped = format!("all {points} control points of the pass before are fitted again");
-    Ok(Growth { curve, outcome, domain, levels: vec![level], stopped })
+    Ok(Growth { unknowns, outcome, domain, levels: vec![level], stopped })
 }
 
 /// One level: a fit with a fixed number of control points.
@@ -153,22 +156,26 @@ pub fn refit(
 /// * `whitenings` — residuals are whitened anew so often at most
 fn fit_level(
     simulation: &mut Simulation<'_>,
-    curve: &StiffnessCurve,
+    unknowns: &Unknowns,
     whitenings: usize,
     settings: &Settings,
-    lowest_tangent: f64,
+    lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
 ) -> Result<(Outcome, Domain, Level)> {
     let clock = Instant::now();
     let spent_before = watch.meter.read();
-    let points = curve.len();
+    let points = points_of(unknowns);
     let [unit, measurements] = [simulation.unit(), simulation.measurements() as f64];
-    (watch.observe)(Event::Level { component: simulation.task().fitted[0], points });
-    simulation.set_curve(curve.clone());
+    if let Some(component) = unknowns.iter().find_map(|unknown| unknown.components.first().copied()) {
+        (watch.observe)(Event::Level { component, points });
+    }
+    simulation.set_unknowns(unknowns.clone());
     if let Some(limit) = settings.robust {
         simulation.make_robust(limit);
     }
-    let domain = domain(curve, settings.constraints, lowest_tangent)?;
+    let domains = unknowns.iter().zip(lowest_tangents);
+    let domains = domains.map(|(unknown, &lowest)| domain(&unknown.curve, settings.constraints, lowest));
+    let domain = Domain::together(&domains.collect::<Result<Vec<_>>>()?);
     let mut observe = |iteration: &Iteration| {
         let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
         let factorisations = watch.meter.read().since(&spent_before).factorisations;
@@ -191,13 +198,13 @@ fn fit_level(
             Err(never) => match never {},
         }
     };
-    let mut outcome = fit_from(simulation, &DVector::from_column_slice(curve.stiffnesses()));
+    let mut outcome = fit_from(simulation, &unknowns.values());
     // How errors of what is held enter depends on the shapes: those of the minimum count, wherever the fit started.
     for _ in 0..whitenings {
         if !simulation.is_whitened() || outcome.residual.is_empty() {
             break;
         }
-        simulation.set_curve(curve.with_stiffnesses(outcome.point.iter().copied().collect())?);
+        simulation.set_unknowns(unknowns.with_values(&outcome.point)?);
         let again = fit_from(simulation, &outcome.point);
         let moved = (&again.point - &outcome.point).amax() / outcome.point.amax();
         if again.residual.is_empty() {
@@ -211,6 +218,20 @@ fn fit_level(
     let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
     let status = outcome.status.to_string();
     Ok((outcome, domain, Level { points, rms, status, iterations, projected }))
+}
+
+/// Control points of each curve.
+fn points_of(unknowns: &Unknowns) -> usize {
+    unknowns.iter().map(|unknown| unknown.curve.len()).max().unwrap_or(0)
+}
+
+/// The same curves through other, equidistant control points, over all that is visited.
+fn resampled(simulation: &Simulation<'_>, unknowns: &Unknowns, points: usize) -> Result<Unknowns> {
+    let resampled = |unknown: &Unknown| {
+        let curve = unknown.curve.resampled(points, simulation.reach(unknown))?;
+        Ok(Unknown { curve, ..unknown.clone() })
+    };
+    unknowns.iter().map(resampled).collect::<Result<_>>().map(Unknowns::new)
 }
 
 /// One, two, three, five, nine …: every segment is halved, up to the most that is wanted.

@@ -3,7 +3,7 @@
 use super::growth::Growth;
 use super::report::{CurveReport, ForceRow, Histogram, Hysteresis, Sample, SequenceReport};
 use super::shapes::Shapes;
-use crate::equilibria::{Settled, Simulation};
+use crate::equilibria::{Settled, Simulation, Unknown};
 use crate::optimise::uncertainty::Covariance;
 use cloth_data::frame::Phase;
 use cloth_sim::bending::Rolled;
@@ -14,17 +14,21 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The curve with its bands, over the strains that the simulation's equilibria visit.
 pub(crate) fn curve_report(
     simulation: &Simulation<'_>,
+    unknown: Unknown,
     growth: Growth,
     covariance: &Covariance,
     observed: bool,
 ) -> CurveReport {
-    let Growth { curve, outcome, domain, .. } = growth;
-    let visited @ [low, high] = simulation.visited();
+    let Growth { outcome, domain, .. } = growth;
+    let visited @ [low, high] = simulation.visited(&unknown);
     // A curve starts at rest, wherever what was seen of it does.
     let range = [low.min(0.0), high];
     let slack = &domain.rows * &outcome.point - &domain.bounds;
+    let rolled = rolled(simulation, &unknown);
+    let strains = simulation.strains(&unknown);
+    let curve = unknown.curve;
     let last = curve.strains()[curve.len() - 1];
-    let rows = Rows { curve: &curve, covariance, rolled: rolled(simulation) };
+    let rows = Rows { curve: &curve, covariance, rolled };
     let seen = visited.map(|strain| rows.place(strain));
     let mut samples = rows.over(range);
     samples.iter_mut().filter(|sample| sample.strain < seen[0]).for_each(|sample| sample.band = None);
@@ -32,7 +36,7 @@ pub(crate) fn curve_report(
         observed,
         points: curve.strains().iter().map(|&strain| rows.at(rows.place(strain))).collect(),
         samples,
-        histogram: rows.histogram(range, &simulation.strains()),
+        histogram: rows.histogram(range, &strains),
         deviations: covariance.standard_deviations(),
         half_bands: covariance.half_bands(),
         rank: covariance.rank,
@@ -47,8 +51,8 @@ pub(crate) fn curve_report(
 }
 
 /// How the fitted bending elements meet a rolled sheet; `None` for stretch and shear.
-fn rolled(simulation: &Simulation<'_>) -> Option<Rolled> {
-    let component = simulation.task().fitted[0];
+fn rolled(simulation: &Simulation<'_>, unknown: &Unknown) -> Option<Rolled> {
+    let component = *unknown.components.first()?;
     simulation.settled().find_map(|s| s.replica.cloth(s.frame).bending()?.rolled(component))
 }
 

@@ -58,6 +58,35 @@ impl Domain {
     pub fn everywhere(n: usize) -> Self {
         Self { rows: DMatrix::zeros(0, n), bounds: DVector::zeros(0), roughness: None }
     }
+
+    /// Points of several domains, one below the other.
+    pub fn together(domains: &[Self]) -> Self {
+        let roughness: Vec<DMatrix<f64>> = domains
+            .iter()
+            .map(|domain| domain.roughness.clone().unwrap_or_else(|| DMatrix::zeros(0, domain.rows.ncols())))
+            .collect();
+        let roughness = block_diagonal(&roughness.iter().collect::<Vec<_>>());
+        Self {
+            rows: block_diagonal(&domains.iter().map(|domain| &domain.rows).collect::<Vec<_>>()),
+            bounds: DVector::from_iterator(
+                domains.iter().map(|domain| domain.bounds.len()).sum(),
+                domains.iter().flat_map(|domain| domain.bounds.iter().copied()),
+            ),
+            roughness: (roughness.nrows() > 0).then_some(roughness),
+        }
+    }
+}
+
+fn block_diagonal(blocks: &[&DMatrix<f64>]) -> DMatrix<f64> {
+    let size = |of: fn(&DMatrix<f64>) -> usize| blocks.iter().map(|block| of(block)).sum();
+    let mut all = DMatrix::zeros(size(DMatrix::nrows), size(DMatrix::ncols));
+    let (mut row, mut column) = (0, 0);
+    for block in blocks {
+        all.view_mut((row, column), block.shape()).copy_from(block);
+        row += block.nrows();
+        column += block.ncols();
+    }
+    all
 }
 
 pub(super) type Values = (DVector<f64>, Option<DMatrix<f64>>);
