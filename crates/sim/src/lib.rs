@@ -32,8 +32,7 @@
 //! | [`membrane::Membrane`], [`bending::Bending`] | the elements of a mesh |
 //! | [`load::Held`] | nodes held by clips or tables |
 //! | [`cloth::Problem`] → [`cloth::Cloth`] | the assembled problem: energy, gradient, sparse Hessian |
-//! | [`equilibrium::Solver`] → [`equilibrium::Equilibrium`] | the equilibrium, its clip forces and the status of the
-//! solve |
+//! | [`equilibrium::Solver`] → [`equilibrium::Equilibrium`] | the equilibrium, its clip forces and the status |
 //! | [`dynamics::Motion`] | cloth in motion: implicit or explicit time steps, damping, wind, energies |
 //! | [`descent`] | from any shape down to a shape at rest |
 //! | [`samples::Sample`] | small problems with known answers |
