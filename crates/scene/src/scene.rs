@@ -90,7 +90,7 @@ impl Scene {
             return Err(file.invalid("measure", "drape-coefficient", expected));
         }
         if scene.measure == Some(Measure::Droop) && held.is_empty() {
-            return Err(file.invalid("measure", "droop", "a sheet that is held somewhere"));
+            return Err(file.invalid("measure", "droop", "a sheet with [[held]] nodes"));
         }
         Ok(Self {
             name: scene.name,

@@ -204,7 +204,7 @@ fn measured(scene: &Scene, simulation: Simulation) -> Result<Simulation> {
         return Err(scene.invalid(
             "measure",
             "no gravity",
-            "gravity_m_s2 above zero: droop and drape are downwards",
+            "nonzero gravity_m_s2: droop and drape are measured along gravity",
         ));
     }
     let down = down.unwrap_or(-Vector3::z());

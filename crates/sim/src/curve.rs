@@ -260,7 +260,7 @@ impl StiffnessCurve {
     /// # Panics
     /// If the length of `weights` differs from the number of control points.
     pub fn weights(&self, strain: f64, weights: &mut [f64]) {
-        assert_eq!(weights.len(), self.len(), "one weight a control point");
+        assert_eq!(weights.len(), self.len(), "one weight per control point");
         weights.fill(0.0);
         if strain >= 0.0 {
             stress_row(&self.strains, strain, weights);

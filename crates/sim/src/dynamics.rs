@@ -102,7 +102,7 @@ impl<'a> Motion<'a> {
             }
         }
         if let Some(&mass) = cloth.masses().iter().find(|&&mass| !(mass > 0.0)) {
-            let expected = "more than 0, in kg/m²: what has no mass has no motion";
+            let expected = "more than 0, in kg/m²: motion needs mass";
             return Err(Error::InvalidValue { field: "areal_density", value: mass, expected });
         }
         let mut free = vec![0.0; cloth.unknowns()];

@@ -60,7 +60,7 @@ pub enum Error {
         triangles: [usize; 2],
     },
     /// Material coordinates are mirrored, or a triangle is wound against them.
-    #[error("triangle {triangle}: its material coordinates are wound the other way (mirrored)")]
+    #[error("triangle {triangle}: its material coordinates are mirrored (opposite winding)")]
     MirroredMaterial {
         /// Triangle index.
         triangle: usize,

@@ -1,13 +1,13 @@
 //! Strain measures of the models, and the corresponding laboratory measures.
 //!
 //! ```text
-//!                 strain of an element              physical measure p          load there
-//! Green           E = (λ² − 1)/2                    λ − 1                       P = λ σ(E)
-//! engineering     λ − 1                             λ − 1                       P = σ(λ − 1)
-//! shear           w_u·w_v = sin γ                   γ, picture frame            S = σ(sin γ)
-//! diagonal        ε± = √(1 ± sin γ) − 1             γ, picture frame            S cos γ = dW/dγ, W = ½ W_c(ε₊) + ½ W_c(ε₋)
-//! hinge           3 κ on a regular grid             κ, rolled sheet             M = σ(3κ)
-//! ring-2 springs  of each mesh its own              κ, rolled sheet             see Rolled
+//!                 strain of an element          physical measure p          load there
+//! Green           E = (λ² − 1)/2                λ − 1                       P = λ σ(E)
+//! engineering     λ − 1                         λ − 1                       P = σ(λ − 1)
+//! shear           w_u·w_v = sin γ               γ, picture frame            S = σ(sin γ)
+//! diagonal        ε± = √(1 ± sin γ) − 1         γ, picture frame            S cos γ = dW/dγ, W = ½ W_c(ε₊) + ½ W_c(ε₋)
+//! hinge           3 κ on a regular grid         κ, rolled sheet             M = σ(3κ)
+//! ring-2 springs  depends on the mesh           κ, rolled sheet             see Rolled
 //! ```
 //!
 //! P is the force per rest width of a strip (engineering strain, nominal stress), S the force along a bar per its

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   ▐╲╱╲╱╲╱╲▌ →   a strip 1:2 cut at 45°, pulled by 10 %      goal    the shear of the cloth resists, not the mesh
-//!   ▐╱╲╱╲╱╲╱▌     k = 1e5 N/m along the yarns, 30 in shear    passes  crossed ≤ a tenth of the force with '/', 1 % mesh error
+//!   ▐╱╲╱╲╱╲╱▌     k = 1e5 N/m along the yarns, 30 in shear    passes  crossed ≤ a tenth of '/', 1 % mesh error
 //! ```
 
 use cloth_sim::equilibrium::{Settings, Solver};

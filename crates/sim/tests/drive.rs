@@ -1,7 +1,7 @@
 //! Clips that move far from one frame to the next.
 //!
 //! ```text
-//!   ▐▔▔▔▔▌ → → →      a strip's clip jumps by 50 %      goal    one call, as many steps as it takes
+//!   ▐▔▔▔▔▌ → → →      a strip's clip jumps by 50 %      goal    one call, as many steps as needed
 //!   ▐▔▔╲  ↻           a clamp turns by 120°             passes  the energy of 20 fixed steps, to 1e-8
 //! ```
 

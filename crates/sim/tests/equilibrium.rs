@@ -1,8 +1,8 @@
 //! Equilibria: ordinary, extreme and impossible ones.
 //!
 //! ```text
-//!  ▐▔▔╲    hanging, jutting out, compressed,    goal    converged, or a status that says what is wrong; no panic
-//!      ╲   collapsed, sheared, unheld sheets    passes  as each test says; the numbers are those of the cases
+//!  ▐▔▔╲    hanging, jutting out, compressed,    goal    converged, or a status with the reason; no panic
+//!      ╲   collapsed, sheared, unheld sheets    passes  see each test
 //! ```
 
 use cloth_sim::cloth::Cloth;

@@ -1,7 +1,7 @@
 //! Hinges and bending springs: the angle, and the flexural rigidity of a sheet rolled to a cylinder.
 //!
 //! ```text
-//!    ╭──╮     goal    the angle exact at 0 and near ±π; energy per area = ½ D κ², D the effective rigidity
+//!    ╭──╮     goal    angle exact at 0 and near ±π; energy per area = ½ D κ², D the effective rigidity
 //!   ╱ ↑κ ╲    sheet   a grid rolled at several angles to the weft, radius 10⁴ cells, inner hinges only
 //!             passes  1e-14 rad; D/k = 3, 9, 3 on '/' grids, 3, 3.75, 4.5 on alternating ones, to 0.1 %
 //! ```
@@ -250,7 +250,7 @@ fn a_sheet_that_bends_as_a_cylinder_knows_no_diagonals() {
     ]
     .map(|(diagonals, tied)| tips(diagonals, tied));
     println!(
-        "droop of the tip's corners, m: '/' {forward:.4?}, in turn {alternating:.4?}, as a cylinder {cylinder:.4?}"
+        "droop of the tip's corners, m: '/' {forward:.4?}, alternating {alternating:.4?}, as a cylinder {cylinder:.4?}"
     );
     assert!((forward[0] - forward[1]).abs() > 2e-3);
     assert!((alternating[0] - alternating[1]).abs() < 1e-4 && alternating[0] > cylinder[0] + 1e-3);

@@ -3,8 +3,8 @@
 //! ```text
 //!  ▐▔▔╲      cantilever, stiffness 1.5 times off; stretched sheet; picture frame that buckles
 //!      ╲     goal    the counts that make a fit fast
-//!            passes  cantilever ≤ 8 steps, also with stretch : bending = 1e9; stretch warm ≤ 2 factorisations; into the
-//!                    buckle ≤ 30
+//!            passes  cantilever ≤ 8 steps, also with stretch : bending = 1e9; stretch warm ≤ 2 factorisations;
+//!                    into the buckle ≤ 30
 //! ```
 
 use cloth_sim::cloth::Cloth;

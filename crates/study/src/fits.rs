@@ -69,7 +69,7 @@ pub(crate) fn reference(
         return Ok((reference, format!("the known curves of {}", fabric.name)));
     }
     let nodes = extent.fit_nodes.iter().copied().max().unwrap_or(extent.usual_nodes);
-    progress.note(&format!("the fit that others are compared with: {nodes}x{nodes}"));
+    progress.note(&format!("reference fit: {nodes}x{nodes}"));
     let settings = Trial::usual(nodes).settings();
     let known = Knowledge::default();
     let report = incremental::fit(&subject.set, &Stage::ALL, &known, &settings, &mut Watch::default())?;

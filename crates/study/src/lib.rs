@@ -1,10 +1,10 @@
 //! Studies of error against run time, and of the savings and errors from leaving out parts of a scene.
 //!
 //! ```text
-//! known fabric ──▶ scenes on finer and finer meshes ──▶ error and cost of an equilibrium      [equilibria]
+//! known fabric ──▶ scenes on refined meshes ──▶ error and cost of an equilibrium               [equilibria]
 //! measured set ──▶ fits: nodes, models, solvers, points, frames ──▶ error and cost of a fit   [fits]
-//! known fabric ──▶ more and more noise ──▶ error of a curve beside the least there can be     [noise]
-//!              ──▶ scenes with and without a part ──▶ what it saves, what it costs            [ablation]
+//! known fabric ──▶ increasing noise ──▶ error of a curve, and its Cramér–Rao bound            [noise]
+//!              ──▶ scenes with and without a part ──▶ savings and error                       [ablation]
 //! ```
 //!
 //! Runs are timed one at a time; within a run, frames are solved in parallel, as in a fit. A failed run is recorded as

@@ -1,8 +1,8 @@
 //! Error of a fit compared with the least error that its measurements allow.
 //!
 //! ```text
-//! own mesh      curve that the fit can represent ──▶ its own simulation ──▶ + noise ──▶ fit     only noise errs
-//! finer mesh    the fabric's curve ──▶ the rig's simulation             ──▶ + noise ──▶ fit     and mesh and control points
+//! own mesh      curve that the fit can represent ──▶ its own simulation ──▶ + noise ──▶ fit     error of noise only
+//! finer mesh    the fabric's curve ──▶ the rig's simulation             ──▶ + noise ──▶ fit     plus mesh and spline
 //! floor         root mean square over the range of √(wᵀ (JᵀJ/σ²)⁻¹ w), w = ∂stress/∂k           Cramér and Rao
 //! ```
 //!

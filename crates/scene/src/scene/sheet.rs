@@ -31,9 +31,8 @@ pub(super) fn origin(mesh: &Mesh) -> Vector3<f64> {
 
 /// Builds the mesh that the file describes.
 pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<Mesh> {
-    let refuse = |key: &str, error: cloth_sim::error::Error| {
-        file.invalid(key, error.to_string(), "a sheet that can be")
-    };
+    let refuse =
+        |key: &str, error: cloth_sim::error::Error| file.invalid(key, error.to_string(), "a valid sheet");
     check_length(file, "sheet.grid.nodes", 2)?;
     let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
         (Some(grid), None, None) => {
@@ -45,8 +44,8 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
         (None, None, Some(mesh)) => {
             let placed = [("origin_m", sheet.origin_m), ("weft", sheet.weft), ("warp", sheet.warp)];
             if let Some((key, _)) = placed.into_iter().find(|(_, value)| value.is_some()) {
-                let expected = "nothing: a mesh file says where the sheet lies";
-                return Err(file.invalid(&format!("sheet.{key}"), "a place", expected));
+                let expected = "none: the mesh file gives the position";
+                return Err(file.invalid(&format!("sheet.{key}"), "a position", expected));
             }
             return of_file(mesh, scene, file);
         }
@@ -120,6 +119,6 @@ fn place(flat: Mesh, sheet: &SheetFile, file: &TomlFile) -> Result<Mesh> {
     let grid = flat.grid;
     // A sheet that is valid near the origin may not be where coordinates are too coarse to separate its nodes.
     let mesh = Mesh::new(positions, flat.material, flat.triangles)
-        .map_err(|error| file.invalid("sheet.origin_m", error.to_string(), "a place nearer to zero"))?;
+        .map_err(|error| file.invalid("sheet.origin_m", error.to_string(), "a position nearer to zero"))?;
     Ok(Mesh { grid, ..mesh })
 }

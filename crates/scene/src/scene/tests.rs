@@ -88,7 +88,7 @@ fn numbers_of_the_scene() {
         ),
     ]);
     let free = changed("[[held]]\nedge = \"top\"\n", "").replace("[sheet]", "measure = \"droop\"\n[sheet]");
-    assert_eq!(message(&free), "s.toml:3 measure: found droop, expected a sheet that is held somewhere");
+    assert_eq!(message(&free), "s.toml:3 measure: found droop, expected a sheet with [[held]] nodes");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn sheets() {
         (
             "[3, 3]",
             "[1, 3]",
-            ":4 sheet.grid: found columns: found 1, expected at least 2 nodes, expected a sheet that can be",
+            ":4 sheet.grid: found columns: found 1, expected at least 2 nodes, expected a valid sheet",
         ),
         (
             "[3, 3]",
@@ -115,19 +115,19 @@ fn sheets() {
         (
             "0.2,",
             "nan,",
-            ":4 sheet.grid: found width: found NaN, expected a positive length in metres, expected a sheet that can be",
+            ":4 sheet.grid: found width: found NaN, expected a positive length in metres, expected a valid sheet",
         ),
         (GRID, &disc(", kept_ring = 5"), ":4 sheet.disc.kept_ring: found 5, expected 1 to 4"),
         (GRID, &disc(", kept_ring = 0"), ":4 sheet.disc.kept_ring: found 0, expected 1 to 4"),
         (
             GRID,
             &disc("").replace("0.1", "-0.1"),
-            ":4 sheet.disc: found radius: found -0.1, expected a positive length in metres, expected a sheet that can be",
+            ":4 sheet.disc: found radius: found -0.1, expected a positive length in metres, expected a valid sheet",
         ),
         (
             GRID,
             &format!("{}\norigin_m = [0, 0, 0]", mesh("")),
-            ":5 sheet.origin_m: found a place, expected nothing: a mesh file says where the sheet lies",
+            ":5 sheet.origin_m: found a position, expected none: the mesh file gives the position",
         ),
         (
             GRID,
@@ -163,7 +163,7 @@ fn sheets() {
         (
             GRID,
             &format!("{GRID}\norigin_m = [1e20, 0, 0]"),
-            ":5 sheet.origin_m: found vertices 0 and 1 have the same rest position; merge them, expected a place nearer to zero",
+            ":5 sheet.origin_m: found vertices 0 and 1 have the same rest position; merge them, expected a position nearer to zero",
         ),
     ]);
     let elsewhere = changed(GRID, &mesh("")).replace("sheet.obj", "nothing.obj");

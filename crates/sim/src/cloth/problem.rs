@@ -66,7 +66,7 @@ pub(super) fn check(problem: &Problem<'_>) -> Result<()> {
         return Err(Error::InvalidValue {
             field: "planar",
             value: 1.0,
-            expected: "a problem without bending, without guides and without weight across its plane",
+            expected: "a problem without bending, guides or out-of-plane weight",
         });
     }
     let mesh = problem.mesh;

@@ -5,8 +5,8 @@
 //! σ′(ε) < κ                         low tangent           κ = 10⁻³ of the largest secant stiffness
 //! max σ′ > 10⁴ min σ′               tangent ratio
 //! Tₙ < κ                            end slope: stress beyond the last control point
-//! max k outside what cloth has      magnitude
-//! ε outside what was measured       unvisited range
+//! max k implausible for cloth       magnitude
+//! ε outside the measured range      unvisited range
 //! ```
 //!
 //! k and σ′ = k + εk′ are cubics on every segment. Intervals are isolated by halving their Bernstein coefficients;
@@ -129,10 +129,10 @@ impl Finding {
     pub fn consequence(&self) -> &'static str {
         match self.kind {
             Kind::NegativeStiffness => {
-                "the stress has the wrong sign: what is strained is driven further, and the cloth tears itself apart"
+                "the stress has the wrong sign: strain drives itself further, and the cloth tears itself apart"
             }
             Kind::LowTangent if self.value < 0.0 => {
-                "stress falls as strain grows: neighbours share a load unevenly, strain runs to the end of the interval at a jump"
+                "stress falls as strain grows: neighbours share a load unevenly, and strain jumps to the end of the interval"
             }
             Kind::LowTangent => {
                 "stress hardly grows: strain drifts through the interval and solves converge slowly"
@@ -141,17 +141,17 @@ impl Finding {
                 "the stiffest strain dictates the time step, and matrices are ill-conditioned when both ends are visited"
             }
             Kind::EndSlope if self.value < 0.0 => {
-                "beyond the last control point stress falls for ever: what is strained so far is lost"
+                "beyond the last control point stress falls for ever: cloth strained that far cannot recover"
             }
-            Kind::EndSlope => "beyond the last control point hardly anything resists more strain",
+            Kind::EndSlope => "beyond the last control point hardly anything resists further strain",
             Kind::Magnitude if self.value == 0.0 => "it has no stiffness at all: nothing resists this strain",
             Kind::Magnitude if self.value < self.limit => {
-                "far too soft for a cloth, probably another unit: it hangs like nothing, or stretches without end"
+                "far too soft for a cloth, probably another unit: it folds without resistance or stretches without end"
             }
             Kind::Magnitude => {
-                "far too stiff for a cloth, probably another unit (pascals?): time steps shrink with it"
+                "far too stiff for a cloth, probably another unit (pascals?): stable time steps become tiny"
             }
-            Kind::Unvisited => "nothing was measured there: the curve is a guess",
+            Kind::Unvisited => "no measurement covers these strains: the curve is a guess",
         }
     }
 }

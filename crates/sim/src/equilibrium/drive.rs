@@ -43,7 +43,7 @@ impl Solver<'_> {
         target: &[f64],
         settings: &Settings,
     ) -> Equilibrium {
-        assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
+        assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates per node");
         if let Some(refused) = self.refused(x) {
             return refused;
         }

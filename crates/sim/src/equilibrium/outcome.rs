@@ -27,7 +27,7 @@ impl std::fmt::Display for Status {
             Self::Converged => "converged",
             Self::Unstable => "balanced but unstable",
             Self::IterationLimit => "the iterations ran out",
-            Self::Stalled => "no step made the imbalance smaller",
+            Self::Stalled => "no step reduced the imbalance",
             Self::NotFinite => "the start is not finite",
             Self::NotParallel => "tied groups of nodes are not parallel at the start",
         })

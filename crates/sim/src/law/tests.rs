@@ -1,7 +1,7 @@
 //! A law with coupled strains, through the same sums as the curves.
 //!
 //! ```text
-//! W = Σ_c W_c(ε_c) + p₀ ε₀ ε₁ + ½ p₁ ε₀² ε₂²        p a pair of each element, as history is
+//! W = Σ_c W_c(ε_c) + p₀ ε₀ ε₁ + ½ p₁ ε₀² ε₂²        p a pair per element, as a history would be
 //! goal    gradient = dE/dx, Hessian = d(gradient)/dx, columns = d(gradient)/dp
 //! passes  1e-7 relative; curves alone give what they gave
 //! ```
