@@ -11,8 +11,8 @@ use std::f64::consts::TAU;
 /// A disc about the origin: a node at the centre, and 6k nodes around it on the k-th ring.
 ///
 /// Rings are rotated against each other so that rows of similar triangles mark no direction. All nodes except those of
-/// the rim and of the kept ring then move until the triangles are nearly equilateral. Hinges then resist bending alike
-/// in all directions, only slightly more than in equilateral triangles.
+/// the rim and of the kept ring then move until the triangles are nearly equilateral. Hinges then resist bending
+/// alike in all directions, and only slightly more than in equilateral triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
     /// Radius, m.

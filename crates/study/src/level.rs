@@ -13,7 +13,7 @@ pub struct Level {
     pub noise: f64,
     /// Number of seeds with converged fits.
     pub seeds: usize,
-    /// Number of seeds without.
+    /// Number of seeds whose fits did not converge.
     pub failed: usize,
     /// Root mean square of their curve errors.
     pub error: f64,

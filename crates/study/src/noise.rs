@@ -91,7 +91,7 @@ impl Stage {
         };
         let rig = Rig {
             nodes: [extent.rig_nodes; 2],
-            // Shapes are compared at the fit's own nodes.
+            // Shapes are measured at the fit's own nodes.
             measured: [nodes; 2],
             frames: 6,
             ..Rig::default()

@@ -8,8 +8,8 @@
 
 use crate::error::{Error, Result};
 
-/// Largest absolute strain and stiffness; its inverse is the least distance between two strains. Slopes are then at
-/// most 1e100 and cubic coefficients at most 1e201, so energies, stresses and tangents stay finite.
+/// Largest strain and largest absolute stiffness; its inverse is the least distance between two strains. Slopes are
+/// then at most 1e100 and cubic coefficients at most 1e201, so energies, stresses and tangents stay finite.
 pub(super) const LARGEST: f64 = 1e50;
 const LEAST_GAP: f64 = 1e-50;
 

@@ -155,7 +155,7 @@ fn advance(to: &mut State, from: &State, h: f64, slope: &State) {
 ///
 /// K is evaluated at the given state with the greatest tangent of every curve. Drag, or much more stretch or
 /// compression during the motion, requires shorter steps. The frequency of StVK grows with stretch: a step of 0.9 times
-/// the limit leaves a margin of 11 %.
+/// the limit allows 11 % of it.
 ///
 /// * `positions` — 3 per node, m
 pub fn stable_step(cloth: &Cloth, curves: &Curves, positions: &[f64], damping: &Damping) -> f64 {
