@@ -1,8 +1,8 @@
 //! Cost of one element: `cargo bench -p cloth-sim --bench elements`.
 //!
 //! Measures strains and forces, and the Jacobian blocks, of an element at a given stress and tangent: the operations
-//! counted by Strohkorb 2019. The curve is measured separately. Times are in ns, the fastest of several runs over 10 000
-//! elements. `tests/operations.sh` counts the arithmetic of the compiled functions `…_force` and `…_jacobian`.
+//! counted by Strohkorb 2019. The curve is measured separately. Times are in ns, the fastest of several runs over
+//! 10 000 elements. `tests/operations.sh` counts the arithmetic of the compiled functions `…_force` and `…_jacobian`.
 #![allow(clippy::print_stdout)]
 
 use cloth_sim::bending::Hinge;
