@@ -1,49 +1,50 @@
-//! The drape of a round sheet over a support: its shadow, and its folds.
+//! Drape of a round sheet over a support: shadow and folds.
 //!
 //! ```text
 //! drape coefficient = (A_shadow − A_support)/(A_flat − A_support)        1 for a board, 0 for a hanging tube
 //! ```
 //!
-//! The shadow is the union of all triangles seen along gravity: exact along scan lines, by the midpoint rule across them.
+//! The shadow is the union of all triangles seen along gravity. The integration is exact along scan lines and uses the
+//! midpoint rule across them.
 //!
 //! Source: Cusick 1968; ISO 9073-9.
 
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Vector2, Vector3};
 
-/// Scan lines over the shadow.
+/// Number of scan lines over the shadow.
 const LINES: usize = 2000;
 
-/// A wave of the rim counts as a fold if it rises and falls by this share of the rim's whole range of heights.
+/// A wave of the rim counts as a fold if it rises and falls by this share of the rim's total height range.
 const FOLD: f64 = 0.1;
 
-/// A rim whose heights differ by less than this share of the sheet's size is level.
+/// A rim is level if its heights differ by less than this share of the sheet's size.
 const LEVEL: f64 = 1e-6;
 
-/// How a sheet drapes.
+/// Drape of a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Drape {
     /// The drape coefficient, 0 … 1.
     pub coefficient: f64,
-    /// How far it differs from that of half as many scan lines.
+    /// Difference from the coefficient with half as many scan lines.
     pub coefficient_error: f64,
-    /// m².
+    /// Area of the shadow, m².
     pub shadow_m2: f64,
-    /// Of the part that is held, m².
+    /// Area of the held part, m².
     pub support_m2: f64,
-    /// Of the sheet laid flat, m².
+    /// Area of the flat sheet, m².
     pub flat_m2: f64,
-    /// Waves of the rim.
+    /// Number of folds: waves of the rim.
     pub folds: usize,
-    /// How far the rim hangs below the support: least and most, m.
+    /// Least and greatest depth of the rim below the support, m.
     pub rim_depth_m: [f64; 2],
 }
 
-/// Measures a shape.
+/// Measures the drape of a shape.
 ///
 /// * `held` — the nodes on the support
 /// * `centre` — of the support, in material coordinates, m
-/// * `down` — of unit length
+/// * `down` — unit vector
 pub fn drape(
     mesh: &Mesh,
     positions: &[Vector3<f64>],
@@ -74,7 +75,7 @@ pub fn drape(
     }
 }
 
-/// Points as seen along a direction.
+/// Points projected along a direction.
 fn seen_along(positions: &[Vector3<f64>], down: Vector3<f64>) -> Vec<Vector2<f64>> {
     let aside = if down.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
     let first = (aside - down * aside.dot(&down)).normalize();
@@ -102,7 +103,7 @@ fn shadow(points: &[Vector2<f64>], triangles: &[[usize; 3]], lines: usize) -> f6
     spans.into_iter().map(|spans| width * covered(spans)).sum()
 }
 
-/// Where a line y = const enters and leaves a triangle.
+/// Interval in which a line y = const crosses a triangle.
 fn crossing(corners: &[Vector2<f64>; 3], y: f64) -> Option<[f64; 2]> {
     let mut span = [f64::MAX, f64::MIN];
     for side in 0..3 {
@@ -126,7 +127,7 @@ fn covered(mut spans: Vec<[f64; 2]>) -> f64 {
     sum
 }
 
-/// The nodes of the border, in order around a point of the sheet.
+/// Border nodes, in order around a point of the sheet.
 fn rim(mesh: &Mesh, centre: Vector2<f64>) -> Vec<usize> {
     let edges = mesh.edges().unwrap_or_default();
     let border = edges.iter().filter(|edge| edge.right.is_none());
@@ -140,9 +141,9 @@ fn rim(mesh: &Mesh, centre: Vector2<f64>) -> Vec<usize> {
     nodes
 }
 
-/// How often a closed line rises and falls by more than a share of its range.
+/// Number of times a closed line rises and falls by more than a share of its range.
 ///
-/// * `level` — a line of less range is level
+/// * `level` — a line with a smaller range is level
 fn waves(heights: &[f64], level: f64) -> usize {
     let top = (0..heights.len()).max_by(|&a, &b| heights[a].total_cmp(&heights[b]));
     let Some(top) = top else { return 0 };
@@ -151,7 +152,7 @@ fn waves(heights: &[f64], level: f64) -> usize {
     if !(heights[top] - lowest > level) {
         return 0;
     }
-    // From the top downwards, then up and down in turn.
+    // From the top down, then alternately up and down.
     let (mut count, mut falling, mut extreme) = (0, true, heights[top]);
     for step in 1..=heights.len() {
         let height = heights[(top + step) % heights.len()];
@@ -178,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_shadow_is_the_union_of_what_overlaps() {
-        // Two unit squares, of which a quarter is shared, and a triangle in the first one's shadow.
+        // Two unit squares that share a quarter, and a triangle in the shadow of the first.
         let points =
             [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5], [1.5, 0.5], [1.5, 1.5], [0.5, 1.5]];
         let points: Vec<Vector2<f64>> = points.into_iter().map(Vector2::from).collect();

@@ -1,4 +1,4 @@
-//! How far a sheet hangs below what holds it, against the same sheet that does not stretch.
+//! Droop: depth of a sheet below its holds, compared with the same sheet as laid out.
 
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
@@ -6,29 +6,29 @@ use nalgebra::Vector3;
 /// Droop of a hung sheet.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Droop {
-    /// Depth of the lowest point below the middle of the held ones, m.
+    /// Depth of the lowest point below the mean of the held nodes, m.
     pub depth_m: f64,
-    /// The same of the sheet as it was laid out, m.
+    /// The same depth for the sheet as laid out, m.
     pub flat_depth_m: f64,
-    /// `depth_m`/`flat_depth_m` − 1; absent where the sheet was laid out level.
+    /// `depth_m`/`flat_depth_m` − 1; absent if the sheet was laid out level.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub share: Option<f64>,
-    /// How far the nodes that were lowest have sunk on the mean, m; absent where the sheet was laid out level.
+    /// Mean sinking of the nodes that were lowest, m; absent if the sheet was laid out level.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bottom_edge_sinks_m: Option<f64>,
-    /// How far the middle one of these has sunk, m.
+    /// Sinking of the middle one of these nodes, m; absent if the sheet was laid out level.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bottom_middle_sinks_m: Option<f64>,
 }
 
-/// Depths within this share of the sheet's size are one.
+/// Depths that differ by less than this share of the sheet's size count as equal.
 const LEVEL: f64 = 1e-6;
 
-/// Measures a shape.
+/// Measures the droop of a shape.
 ///
-/// * `mesh` — with the sheet as it was laid out
-/// * `held` — nodes, at least one
-/// * `down` — of unit length
+/// * `mesh` — the sheet as laid out
+/// * `held` — held nodes, at least one
+/// * `down` — unit vector
 pub fn droop(mesh: &Mesh, positions: &[Vector3<f64>], held: &[usize], down: Vector3<f64>) -> Droop {
     let lowest = |p: &[Vector3<f64>]| p.iter().map(|p| p.dot(&down)).fold(f64::MIN, f64::max);
     let middle =
@@ -63,7 +63,7 @@ mod tests {
     fn a_sheet_that_is_half_as_long_again_droops_by_half() {
         let grid = Grid { columns: 3, rows: 3, width: 2.0, height: 2.0, diagonals: Diagonals::Forward };
         let mesh = grid.mesh().unwrap();
-        // Warp is up: the lower rows sink, the middle of the lowest most.
+        // Warp points up: the lower rows sink, the middle of the lowest row most.
         let sunk = |p: &Vector3<f64>| {
             p - Vector3::y() * (0.5 * (2.0 - p.y) - if p.x == 1.0 && p.y == 0.0 { -0.5 } else { 0.0 })
         };
@@ -73,7 +73,7 @@ mod tests {
         assert_eq!(found.share, Some(0.75));
         assert_eq!(found.bottom_middle_sinks_m, Some(1.5));
         assert!((found.bottom_edge_sinks_m.unwrap() - 3.5 / 3.0).abs() < 1e-15);
-        // Laid out level there is nothing to compare with.
+        // A sheet laid out level has no reference depth.
         let level = droop(&mesh, &mesh.positions, &[6, 8], -Vector3::z());
         assert_eq!((level.share, level.depth_m), (None, 0.0));
     }

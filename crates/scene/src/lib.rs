@@ -1,4 +1,4 @@
-//! Scenes of cloth: a sheet of a material, what holds it and the air around it, let down to rest or followed in time.
+//! Scenes of cloth: a sheet of a material with its holds and the surrounding air, simulated to rest or in time.
 //!
 //! ```text
 //! SCENE.toml ──▶ Scene ─┐
@@ -8,14 +8,14 @@
 //!
 //! | Module | Role |
 //! |---|---|
-//! | [`scene`] | a scene's file, read and checked, and the cloth that it makes of a material |
-//! | [`simulation`] | the scene simulated |
-//! | [`droop`], [`drape`] | what is measured of its last shape |
-//! | [`result`] | the folder that a simulation is written into |
+//! | [`scene`] | reads and validates a scene file; builds the cloth for a material |
+//! | [`simulation`] | simulates a scene |
+//! | [`droop`], [`drape`] | measurements of the final shape |
+//! | [`result`] | writes the result folder of a simulation |
 //!
 //! # Example
 //!
-//! A sheet that hangs from two corners comes to rest and droops:
+//! A sheet hanging from two corners comes to rest and droops:
 //!
 //! ```
 //! use cloth_fit::material::Material;

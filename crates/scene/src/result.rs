@@ -1,4 +1,4 @@
-//! The folder of a simulation: `simulation.json`, `mesh.obj`, its frames, `energies.csv`.
+//! Result folder of a simulation: `simulation.json`, `mesh.obj`, frames, `energies.csv`.
 
 use crate::scene::Scene;
 use crate::simulation::{End, Row, Simulation};
@@ -13,13 +13,13 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::Path;
 
-/// The version of `simulation.json`.
+/// Version of `simulation.json`.
 const SCHEMA: &str = "fit-cloth/simulation/1";
 
-/// Writes a simulation into a folder that exists.
+/// Writes a simulation to an existing folder.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// Errors of the file system.
 pub fn write_simulation(
     folder: &Path,
     scene: &Scene,
@@ -45,7 +45,7 @@ fn energies(rows: &[Row]) -> String {
     for Row { time, energies, step } in rows {
         let [newton, linear] =
             [step.map_or(0, |s| s.newton_iterations), step.map_or(0, |s| s.linear_iterations)];
-        // Writing into a String cannot fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(
             text,
             "{time:.9},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{:.9e},{newton},{linear},{:.3e}",
@@ -133,7 +133,7 @@ pub fn simulation_json(scene: &Scene, material: &Material, simulation: &Simulati
     Value::Object(json)
 }
 
-/// How the motion was computed.
+/// Settings of the motion.
 fn settings(scene: &Scene) -> Value {
     let dynamics = scene.dynamics;
     let mut json = json!({

@@ -1,5 +1,5 @@
-//! Scenes: a sheet, what holds it, the air around it, and how its motion is computed. Nothing that a scene does not name is
-//! assembled.
+//! Scenes: a sheet, its holds, the surrounding air, and the settings of the motion. Only the parts that a scene names
+//! are assembled.
 
 mod array;
 mod file;
@@ -28,31 +28,32 @@ use file::SceneFile;
 use nalgebra::Vector3;
 use std::path::Path;
 
-/// A scene made ready.
+/// A prepared scene.
 pub struct Scene {
     /// Its name.
     pub name: String,
-    /// Where the origin of all coordinates here lies in the scene's own, m: at a sheet that is far from that, else zero.
+    /// Origin of all coordinates here, in the scene file's coordinates, m: at the sheet if that is far from zero,
+    /// otherwise zero.
     pub origin: Vector3<f64>,
-    /// The sheet at rest, where it lies before anything acts on it.
+    /// The sheet at rest, in its initial position.
     pub mesh: Mesh,
-    /// m/s².
+    /// Gravity, m/s².
     pub gravity: Vector3<f64>,
     /// Components that store energy; `None` for all that the material has.
     pub components: Option<Vec<Component>>,
-    /// What is held; every hold is a clip, in the order of the file.
+    /// Held nodes; every hold is a clip, in file order.
     pub held: Vec<Held>,
-    /// What may move in some directions only.
+    /// Nodes that may move in some directions only.
     pub guided: Vec<Guided>,
-    /// The circle whose inside a support holds, if there is one and nothing else is held.
+    /// The circle on a support, if it is the only hold.
     pub support: Option<Circle>,
-    /// Where the nodes are at the start, 3 each, m.
+    /// Positions of the nodes at the start, 3 per node, m.
     pub start: Vec<f64>,
-    /// What is measured at the end.
+    /// Measurement at the end.
     pub measure: Option<Measure>,
-    /// s; `None` where the scene has no end but rest.
+    /// Duration, s; `None` if the scene ends at rest only.
     pub duration: Option<f64>,
-    /// Shapes kept of a second of motion, 1/s.
+    /// Recorded shapes per second of motion, 1/s.
     pub frames_per_second: f64,
     /// Step, integrator, damping, wind.
     pub dynamics: dynamics::Settings,
@@ -60,10 +61,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene; files that it names stand beside it.
+    /// Reads a scene; files named in it are relative to its folder.
     ///
     /// # Errors
-    /// A file that is no scene, with line and key.
+    /// A file that is not a valid scene, with line and key.
     pub fn read(path: &Path) -> Result<Self> {
         let file = TomlFile::read(path)?;
         let scene: SceneFile = file.value()?;
@@ -89,7 +90,7 @@ impl Scene {
             return Err(file.invalid("measure", "drape-coefficient", expected));
         }
         if scene.measure == Some(Measure::Droop) && held.is_empty() {
-            return Err(file.invalid("measure", "droop", "a sheet that is held somewhere"));
+            return Err(file.invalid("measure", "droop", "a sheet with [[held]] nodes"));
         }
         Ok(Self {
             name: scene.name,
@@ -109,10 +110,10 @@ impl Scene {
         })
     }
 
-    /// The components of the material that take part.
+    /// Components of the material that take part.
     ///
     /// # Errors
-    /// One that the scene names and the material lacks.
+    /// A component that the scene names but the material lacks.
     pub fn components(&self, material: &Material) -> Result<Vec<Component>> {
         let Some(components) = &self.components else { return Ok(material.curves.components().collect()) };
         let missing = components.iter().position(|&component| material.curves.get(component).is_none());
@@ -128,10 +129,10 @@ impl Scene {
         }
     }
 
-    /// The scene's cloth of a material; at rest something must hold it.
+    /// The scene's cloth, made of a material; at rest something must hold it.
     ///
     /// # Errors
-    /// As [`Cloth::new`], with the scene's file and line where they can be told.
+    /// Those of [`Cloth::new`], with the scene's file and line if they apply.
     pub fn cloth(&self, material: &Material, components: &[Component], at_rest: bool) -> Result<Cloth> {
         let problem = Problem {
             mesh: &self.mesh,
@@ -148,7 +149,7 @@ impl Scene {
         cloth.map_err(|defect| self.explain(defect))
     }
 
-    /// A defect of the mechanics, as bad input where it is one.
+    /// Converts an error of the mechanics to bad input of the scene, if it is one.
     pub fn explain(&self, defect: Defect) -> Error {
         match &defect {
             Defect::Unpinned { .. } => {

@@ -1,4 +1,4 @@
-//! A scene simulated: in motion, or straight to rest.
+//! Simulation of a scene: in motion, or directly to rest.
 
 use crate::drape::{Drape, drape};
 use crate::droop::{Droop, droop};
@@ -14,68 +14,68 @@ use cloth_sim::material::Component;
 use nalgebra::Vector3;
 use std::time::{Duration, Instant};
 
-/// A shape that is kept.
+/// A recorded shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
-    /// s since the start; `None` for the shape at rest, which takes no time.
+    /// Time since the start, s; `None` for the shape at rest.
     pub time: Option<f64>,
-    /// From the scene's [`origin`](Scene::origin), m.
+    /// Positions relative to the scene's [`origin`](Scene::origin), m.
     pub positions: Vec<Vector3<f64>>,
 }
 
 /// A step of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// s.
+    /// Time, s.
     pub time: f64,
-    /// After the step.
+    /// Energies after the step.
     pub energies: Energies,
-    /// How it went; `None` for the start.
+    /// Outcome of the step; `None` for the start.
     pub step: Option<Step>,
 }
 
-/// How a simulation ended.
+/// End of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum End {
-    /// At rest, or short of it.
+    /// Descent to rest, successful or not.
     Rest(Descent),
-    /// After its duration, or before.
+    /// Motion, for its full duration or less.
     Motion {
         /// Steps taken.
         steps: usize,
         /// Steps whose equation was not solved to the tolerance.
         not_converged: usize,
-        /// The step, from 1, that led to numbers that are not finite.
+        /// Number of the step, from 1, that led to non-finite numbers.
         stopped: Option<usize>,
     },
 }
 
-/// What came of a scene.
+/// Result of a simulation.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
     /// Components that stored energy.
     pub components: Vec<Component>,
-    /// The shapes kept, the start first.
+    /// Recorded shapes, the start first.
     pub frames: Vec<Frame>,
-    /// Every step of a motion, the start first; nothing of a shape at rest.
+    /// Every step of a motion, the start first; empty for a shape at rest.
     pub rows: Vec<Row>,
-    /// How it ended.
+    /// End of the simulation.
     pub end: End,
-    /// What helped its solves along, and how much of the last shape lies beyond its curves.
+    /// Numerical interventions, and the share of the final shape strained beyond its curves.
     pub interventions: Interventions,
-    /// The force that each hold exerts on the sheet at rest, N; nothing of a motion.
+    /// Force of each hold on the sheet at rest, N; empty for a motion.
     pub holds: Vec<Vector3<f64>>,
-    /// How far the sheet hangs down at the end, where the scene asks for it.
+    /// Droop at the end, if the scene measures it.
     pub droop: Option<Droop>,
-    /// The shadow of the drape at the end, where the scene asks for it.
+    /// Drape at the end, if the scene measures it.
     pub drape: Option<Drape>,
-    /// Wall time.
+    /// Wall-clock time.
     pub elapsed: Duration,
 }
 
 impl Simulation {
-    /// All that was asked for was reached.
+    /// True if the simulation reached its goal: rest, or the full duration with every step converged.
     pub fn converged(&self) -> bool {
         match self.end {
             End::Rest(descent) => descent.equilibrium.converged(),
@@ -83,18 +83,18 @@ impl Simulation {
         }
     }
 
-    /// The last shape.
+    /// The final shape.
     pub fn last(&self) -> &[Vector3<f64>] {
         self.frames.last().map_or(&[], |frame| &frame.positions)
     }
 }
 
-/// Lets the scene's sheet down to rest.
+/// Lets the scene's sheet descend to rest.
 ///
-/// * `watch` — is told how many steps were taken
+/// * `watch` — receives the number of steps taken
 ///
 /// # Errors
-/// A sheet that nothing holds, a component that the material lacks, or what the mechanics refuses.
+/// A sheet that nothing holds, a component that the material lacks, or another error of the mechanics.
 pub fn to_rest(scene: &Scene, material: &Material, watch: &mut dyn FnMut(usize)) -> Result<Simulation> {
     let clock = Instant::now();
     let components = scene.components(material)?;
@@ -126,13 +126,13 @@ pub fn to_rest(scene: &Scene, material: &Material, watch: &mut dyn FnMut(usize))
     )
 }
 
-/// Follows the scene's sheet in time; one that leads to numbers that are not finite stops at its last good state.
+/// Simulates the scene's sheet in time; stops at the last good state if a step leads to non-finite numbers.
 ///
-/// * `duration` — s
-/// * `watch` — is told how many steps were taken, and of how many
+/// * `duration` — simulated time, s
+/// * `watch` — receives the number of steps taken and the total
 ///
 /// # Errors
-/// A component that the material lacks, a step beyond its limit, or what else the mechanics refuses.
+/// A component that the material lacks, a step beyond the stability limit, or another error of the mechanics.
 pub fn in_motion(
     scene: &Scene,
     material: &Material,
@@ -165,7 +165,7 @@ pub fn in_motion(
         watch(number, steps);
     }
     let taken = rows.len() - 1;
-    // The last good state is kept, wherever it stopped.
+    // Always keep the last good state.
     if stopped.is_some() && frames.last().is_some_and(|frame| frame.time != Some(motion.time())) {
         frames.push(Frame { time: Some(motion.time()), positions: points(motion.positions()) });
     }
@@ -185,7 +185,7 @@ pub fn in_motion(
     )
 }
 
-/// * `x` — the last shape
+/// * `x` — the final shape
 fn interventions(cloth: &Cloth, material: &Material, remedies: Remedies, x: &[f64]) -> Interventions {
     let share = |component| (component, cloth.extrapolated(&material.curves, component, x));
     let shares = material.curves.components().map(share);
@@ -195,7 +195,7 @@ fn interventions(cloth: &Cloth, material: &Material, remedies: Remedies, x: &[f6
     }
 }
 
-/// The same with what the scene measures of its last shape.
+/// Adds what the scene measures of its final shape.
 fn measured(scene: &Scene, simulation: Simulation) -> Result<Simulation> {
     let positions = simulation.last();
     let down = scene.gravity.try_normalize(0.0);
@@ -204,7 +204,7 @@ fn measured(scene: &Scene, simulation: Simulation) -> Result<Simulation> {
         return Err(scene.invalid(
             "measure",
             "no gravity",
-            "gravity_m_s2 above zero: droop and drape are downwards",
+            "nonzero gravity_m_s2: droop and drape are measured along gravity",
         ));
     }
     let down = down.unwrap_or(-Vector3::z());

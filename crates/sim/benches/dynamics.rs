@@ -1,7 +1,7 @@
-//! What a time step costs: `cargo bench -p cloth-sim --bench dynamics`.
+//! Cost of a time step: `cargo bench -p cloth-sim --bench dynamics`.
 //!
-//! A square of 0.1 m, hung from two corners out of the horizontal, without damping. Rates are over the same first part of
-//! its way for all solvers; Runge–Kutta goes 0.9 of its stable step.
+//! A square of 0.1 m falls from horizontal, held at two corners, without damping. Rates cover the same first part of
+//! the motion for all solvers; Runge–Kutta runs at 0.9 of its stable step.
 #![allow(clippy::print_stdout)]
 
 use cloth_sim::dynamics::{Damping, Integrator, LinearSolver, Motion, Newton, Settings, stable_step};
@@ -12,7 +12,7 @@ use cloth_sim::samples::{self, GRAVITY, SIDE, Sample};
 use nalgebra::Vector3;
 use std::time::Instant;
 
-/// Steps of implicit Euler, of 10 ms.
+/// Implicit Euler steps, 10 ms each.
 const STEPS: usize = 20;
 
 fn hung(nodes: usize) -> Result<Sample> {

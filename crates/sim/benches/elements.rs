@@ -1,8 +1,8 @@
-//! What one element costs: `cargo bench -p cloth-sim --bench elements`.
+//! Cost of one element: `cargo bench -p cloth-sim --bench elements`.
 //!
-//! Strains and forces, and the blocks of the Jacobian, of an element at a given stress and tangent: what the source counts,
-//! without the curve, whose cost stands apart. Nanoseconds are the fastest of several runs over 10 000 elements.
-//! `tests/operations.sh` counts the arithmetic of the functions `…_force` and `…_jacobian` as compiled.
+//! Measures strains and forces, and the Jacobian blocks, of an element at a given stress and tangent: the operations
+//! counted by Strohkorb 2019. The curve is measured separately. Times are in ns, the fastest of several runs over
+//! 10 000 elements. `tests/operations.sh` counts the arithmetic of the compiled functions `…_force` and `…_jacobian`.
 #![allow(clippy::print_stdout)]
 
 use cloth_sim::bending::Hinge;
@@ -18,7 +18,7 @@ use std::time::Instant;
 
 const ELEMENTS: usize = 10_000;
 
-/// Strains, and the force on every node, N.
+/// Strains and nodal forces, N.
 #[inline(always)]
 fn force<const K: usize, const S: usize, E: Element<K, 3, S>>(
     element: &E,
@@ -36,7 +36,7 @@ fn force<const K: usize, const S: usize, E: Element<K, 3, S>>(
     (strains, force)
 }
 
-/// The blocks of the Jacobian, N/m; of the mirrored ones, one.
+/// Jacobian blocks, N/m, without mirror images.
 #[inline(always)]
 fn jacobian<const K: usize, const S: usize, E: Element<K, 3, S>>(
     element: &E,
@@ -61,7 +61,7 @@ fn jacobian<const K: usize, const S: usize, E: Element<K, 3, S>>(
     strains
 }
 
-/// The functions whose arithmetic is counted: one name each in the compiled program.
+/// Functions whose arithmetic is counted, under one name each in the compiled program.
 macro_rules! counted {
     ($force:ident, $jacobian:ident, $element:ty, $nodes:literal, $strains:literal) => {
         #[inline(never)]
@@ -90,7 +90,7 @@ counted!(soft_constraint_force, soft_constraint_jacobian, SoftTriangle, 3, 3);
 counted!(stvk_force, stvk_jacobian, StvkTriangle, 3, 3);
 counted!(hinge_force, hinge_jacobian, Hinge, 4, 1);
 
-/// Nanoseconds a call, the fastest of several runs.
+/// Nanoseconds per call, the fastest of several runs.
 fn nanoseconds(mut call: impl FnMut(usize)) -> f64 {
     let run = |_| {
         let start = Instant::now();
@@ -100,7 +100,7 @@ fn nanoseconds(mut call: impl FnMut(usize)) -> f64 {
     (0..200).map(run).fold(f64::MAX, f64::min)
 }
 
-/// States of an element, all different.
+/// Distinct states of an element.
 fn states<const K: usize>(rest: [Point<3>; K]) -> Vec<[Point<3>; K]> {
     let moved = |index: usize| {
         let mut state = rest;

@@ -1,7 +1,7 @@
-//! What one equilibrium costs, part by part: `cargo bench -p cloth-sim`.
+//! Cost of an equilibrium, part by part: `cargo bench -p cloth-sim`.
 //!
-//! The figures are the fastest of several runs in milliseconds on one core: on a shared machine a median tells of the
-//! neighbours. The count of factorisations is what compares across machines.
+//! Times are the fastest of several runs, in ms on one core; on a shared machine a median mostly measures other
+//! processes. Compare machines by the number of factorisations.
 #![allow(clippy::print_stdout)]
 
 use cloth_sim::cloth::{Cloth, ForceScale};
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
     equilibria("picture frame", &shear?, Component::Shear)
 }
 
-/// A sheet between two bars, one of which is pulled, turned by a tenth of the strain, and shorter by half of it.
+/// A sheet between two bars, one of which is pulled, rotated by a tenth of the strain, and shortened by half of it.
 fn stretch_test(nodes: usize, pull: f64) -> Result<Sample> {
     let mesh = samples::square(nodes, Diagonals::Alternating)?;
     let curve = |component| {
@@ -65,7 +65,7 @@ fn mean(times: &[f64]) -> f64 {
     times.iter().sum::<f64>() / times.len() as f64
 }
 
-/// Time of a task, ms: the fastest of several.
+/// Time of a task, ms: the fastest of several runs.
 fn time(mut task: impl FnMut()) -> f64 {
     let once = |task: &mut dyn FnMut()| {
         let start = Instant::now();
@@ -90,7 +90,7 @@ fn parts(name: &str, nodes: usize, sample: &Sample) -> Result<()> {
         cloth.gradient(&sample.curves, &x, &mut gradient, &mut scale);
     });
     let hessian_time = time(|| cloth.hessian(&sample.curves, &x, Curvature::Full, &mut values));
-    // From an equilibrium a solve is one gradient, one Hessian and one factorisation.
+    // From an equilibrium, a solve takes one gradient, one Hessian and one factorisation.
     let solve_time = time(|| {
         let again = solver.solve(&sample.curves, &mut x, &Settings::default());
         assert_eq!(again.factorisations, 1);
@@ -110,7 +110,7 @@ fn parts(name: &str, nodes: usize, sample: &Sample) -> Result<()> {
 
 /// Equilibria of several frames from four starts.
 ///
-/// * `off` — the component whose stiffness is wrong
+/// * `off` — component with the wrong stiffness
 fn equilibria(name: &str, frames: &[Sample], off: Component) -> Result<()> {
     let softer = |sample: &Sample, factor: f64| -> Result<Curves> {
         let mut curves = sample.curves.clone();
@@ -157,16 +157,16 @@ fn equilibria(name: &str, frames: &[Sample], off: Component) -> Result<()> {
     Ok(())
 }
 
-/// Where a solve starts.
+/// Start of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Start {
     /// The interpolated or flat shape.
     Cold,
-    /// The equilibrium of a stiffness 1.5 times too small.
+    /// The equilibrium for a stiffness 1.5 times too small.
     Measured,
-    /// The equilibrium of a stiffness 10 % too small.
+    /// The equilibrium for a stiffness 10 % too small.
     Warm,
-    /// The same, moved by the predicted displacement.
+    /// The previous start, moved by the predicted displacement.
     Predicted,
 }
 

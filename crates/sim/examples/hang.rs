@@ -1,4 +1,4 @@
-//! A square of cloth hangs from two corners: `cargo run -p cloth-sim --example hang`.
+//! A square of cloth hanging from two corners: `cargo run -p cloth-sim --example hang`.
 #![allow(clippy::print_stdout)]
 
 use cloth_sim::cloth::{Cloth, Problem};

@@ -14,30 +14,28 @@ use crate::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 /// The bending elements.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bending {
-    /// Ring-2 springs. They have no stiffness against bending where the cloth is flat.
+    /// Ring-2 springs. A flat sheet of them has no bending stiffness.
     Springs(Vec<Spring>),
     /// Discrete-shell hinges.
     DiscreteShells(Vec<Hinge>),
 }
 
-/// What a component's elements are to a sheet that is rolled to a cylinder across them: the way from a model's own strain
-/// and stress to curvature and moment.
+/// Converts a bending component's own strain and stress to the curvature and moment of a sheet rolled to a cylinder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rolled {
     /// Hinges along the lines of a regular grid: [`HINGE_STRAIN_PER_CURVATURE`]; the moment is the stress.
     Hinges,
-    /// Ring-2 springs over two segments of this length, m, which bear this share of the cloth; read at the size of their
-    /// strain.
+    /// Ring-2 springs over two segments. Strains are absolute values.
     Springs {
         /// Length of a segment, m.
         segment: f64,
-        /// Share of the cloth.
+        /// Share of the cloth's area that the springs stand for.
         share: f64,
     },
 }
 
 impl Rolled {
-    /// The size of the strain at a curvature, 1/m.
+    /// Absolute strain at a curvature (1/m).
     pub fn strain(self, curvature: f64) -> f64 {
         match self {
             Self::Hinges => HINGE_STRAIN_PER_CURVATURE * curvature,
@@ -45,7 +43,7 @@ impl Rolled {
         }
     }
 
-    /// The curvature, 1/m, at a size of the strain.
+    /// Curvature (1/m) at an absolute strain.
     pub fn curvature(self, strain: f64) -> f64 {
         match self {
             Self::Hinges => strain / HINGE_STRAIN_PER_CURVATURE,
@@ -63,7 +61,7 @@ impl Rolled {
 }
 
 impl Bending {
-    /// A pass over the elements.
+    /// Runs a pass over the elements.
     pub(crate) fn visit(&self, pass: &mut impl Pass) {
         match self {
             Self::Springs(elements) => pass.visit::<2, 3, 1, _>(1, elements),
@@ -71,13 +69,13 @@ impl Bending {
         }
     }
 
-    /// What a component's elements are to a rolled sheet; `None` if there are none.
+    /// Conversion to a rolled sheet for a component; `None` if it has no elements.
     pub fn rolled(&self, component: Component) -> Option<Rolled> {
         match self {
             Self::DiscreteShells(hinges) => {
                 hinges.iter().any(|hinge| hinge.component == component).then_some(Rolled::Hinges)
             }
-            // Both families along neither yarn share the cloth, and a roll bends one of them.
+            // The two diagonal families share the cloth's area, and a roll bends only one of them.
             Self::Springs(springs) => {
                 springs.iter().find(|spring| spring.component == component).map(|spring| Rolled::Springs {
                     segment: 0.5 * spring.rest_length,
@@ -87,10 +85,10 @@ impl Bending {
         }
     }
 
-    /// The elements that the given components need; `None` if none of them is a bending component.
+    /// Elements for the given components; `None` if none of them is a bending component.
     ///
     /// # Errors
-    /// Springs on a mesh that is no regular grid; a hinge with a collapsed wing.
+    /// Springs on a mesh that is not a regular grid; a hinge with a collapsed wing.
     pub fn new(model: Model, mesh: &Mesh, components: &[Component]) -> Result<Option<Self>> {
         if !components.iter().any(|component| component.is_bending()) {
             return Ok(None);

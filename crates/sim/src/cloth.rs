@@ -1,7 +1,7 @@
-//! The cloth: all elements of one problem, their total energy, its gradient and sparse Hessian.
+//! The assembled cloth: all elements of one problem, with total energy, gradient and sparse Hessian.
 //!
-//! A problem lists the parts that it has. What is absent costs nothing: no hinge in a stretch problem's matrix, two
-//! unknowns a node where the motion is planar, no unknown for a node that is held.
+//! A problem lists only the parts it has, and absent parts cost nothing: a stretch problem has no hinges in its matrix,
+//! planar motion has two unknowns per node, and a held node has none.
 
 mod alike;
 mod guide;
@@ -29,53 +29,53 @@ use numbering::{GraphPass, HELD, ScatterPass, columns, leaders, number};
 use problem::{check, check_pinned};
 use std::collections::BTreeSet;
 
-/// A problem made ready: elements, masses, numbering, matrix pattern and symbolic factorisation. Shared by all frames
-/// and threads; what changes lies in a [`Solver`](crate::equilibrium::Solver).
+/// A prepared problem: elements, masses, numbering, matrix pattern and symbolic factorisation. Shared by all frames and
+/// threads; all mutable state is in a [`Solver`](crate::equilibrium::Solver).
 #[derive(Debug)]
 pub struct Cloth {
     membrane: Membrane,
     bending: Option<Bending>,
-    /// Of every node, kg.
+    /// Mass of every node, kg.
     masses: Vec<f64>,
-    /// m/s².
+    /// Gravity, m/s².
     gravity: Vector3<f64>,
     nodes: usize,
     clips: usize,
     clip_of: Vec<Option<usize>>,
     planar: bool,
-    /// Of the rest mesh, whatever the model.
+    /// Triangles of the rest mesh, for every model.
     triangles: Vec<[usize; 3]>,
     /// Mean length of the rest mesh's edges, m.
     mean_edge: f64,
-    /// Elements that were left out, and those that stand for them: their nodes.
+    /// Node pairs of omitted elements and of the elements that represent them.
     twins: Vec<Twins>,
-    /// Index into stacked coordinates of every unknown; of a group that moves alike, its first node's.
+    /// Index of every unknown in the stacked coordinates; for a tied group, the index of its first node.
     unknowns: Vec<usize>,
-    /// Every coordinate that is not held, and its unknown.
+    /// Every coordinate that is not held, with its unknown.
     free: Vec<(usize, usize)>,
     pattern: Pattern,
     guides: Vec<Guide>,
-    /// Per part: where each lower entry of each element goes. See [`Cloth::hessian`].
+    /// Per part: destination of each lower entry of each element. See [`Cloth::hessian`].
     targets: [Vec<u32>; 2],
-    /// Where the diagonal stands among the entries.
+    /// Positions of the diagonal among the entries.
     diagonal: Vec<usize>,
 }
 
 impl Cloth {
-    /// Makes a problem of equilibrium ready.
+    /// Prepares an equilibrium problem.
     ///
     /// # Errors
-    /// As [`Cloth::in_motion`]; a part of the cloth that nothing holds.
+    /// Those of [`Cloth::in_motion`]; a part of the cloth that nothing holds.
     pub fn new(problem: &Problem<'_>) -> Result<Self> {
         check_pinned(problem)?;
         Self::in_motion(problem)
     }
 
-    /// Makes a problem of motion ready: nothing needs to hold the cloth.
+    /// Prepares a dynamic problem. The cloth may be free.
     ///
     /// # Errors
-    /// Springs on a mesh that is no grid; a collapsed hinge; a density below zero; a held, tied or guided node that does
-    /// not exist or is two of these; bending, guides, or weight across the plane, in a planar problem.
+    /// Springs on a mesh that is not a grid; a collapsed hinge; a negative density; a held, tied or guided node that
+    /// does not exist or is in two of these roles; bending, guides or out-of-plane weight in a planar problem.
     pub fn in_motion(problem: &Problem<'_>) -> Result<Self> {
         let Problem { mesh, model, components, planar, .. } = *problem;
         check(problem)?;
@@ -155,7 +155,7 @@ impl Cloth {
         self.unknowns.len()
     }
 
-    /// Number of entries of the Hessian's lower triangle.
+    /// Number of entries in the Hessian's lower triangle.
     pub fn entries(&self) -> usize {
         self.pattern.entries()
     }
@@ -165,49 +165,49 @@ impl Cloth {
         self.clips
     }
 
-    /// The membrane's elements.
+    /// Membrane elements.
     pub fn membrane(&self) -> &Membrane {
         &self.membrane
     }
 
-    /// The bending elements, if the problem has any.
+    /// Bending elements, if the problem has any.
     pub fn bending(&self) -> Option<&Bending> {
         self.bending.as_ref()
     }
 
-    /// Index into stacked coordinates of every unknown, in the order of the matrix.
+    /// Index of every unknown in the stacked coordinates, in matrix order.
     pub fn unknown_coordinates(&self) -> &[usize] {
         &self.unknowns
     }
 
-    /// Every coordinate that is not held, and the index of its unknown; several of one unknown where nodes move alike.
+    /// Every coordinate that is not held, with the index of its unknown. Tied nodes share unknowns.
     pub fn free_coordinates(&self) -> &[(usize, usize)] {
         &self.free
     }
 
-    /// Sums a quantity of all coordinates, as a gradient, over each unknown; of a guided node the part along its free
-    /// directions.
+    /// Sums a coordinate quantity, such as a gradient, over each unknown. For a guided node only the part along its
+    /// free directions remains.
     pub fn collect(&self, coordinates: &[f64], unknowns: &mut [f64]) {
         unknowns.fill(0.0);
         self.free.iter().for_each(|&(coordinate, unknown)| unknowns[unknown] += coordinates[coordinate]);
         self.project(unknowns);
     }
 
-    /// Sets the coordinates that are not held to their unknown's value, as of a step.
+    /// Sets every free coordinate to the value of its unknown, for example of a step.
     pub fn spread(&self, unknowns: &[f64], coordinates: &mut [f64]) {
         self.free.iter().for_each(|&(coordinate, unknown)| coordinates[coordinate] = unknowns[unknown]);
     }
 
-    /// Total energy, J: elastic, less the work of the weight.
+    /// Total energy, J: elastic energy plus that of the weight.
     ///
-    /// * `x` — 3 stacked coordinates a node, m
+    /// * `x` — 3 stacked coordinates per node, m
     pub fn energy(&self, curves: &Curves, x: &[f64]) -> f64 {
         self.elastic_energy(curves, x) + self.weight_energy(x)
     }
 
-    /// Gradient of the total energy, N, 3 a node, held nodes included; returns the energy, J.
+    /// Computes the gradient of the total energy, N, 3 per node, held nodes included. Returns the energy, J.
     ///
-    /// The scale receives how large forces and rounding are; see [`ForceScale`].
+    /// `scale` receives the magnitudes of forces and rounding errors; see [`ForceScale`].
     pub fn gradient(&self, curves: &Curves, x: &[f64], gradient: &mut [f64], scale: &mut ForceScale) -> f64 {
         gradient.fill(0.0);
         scale.magnitude.fill(0.0);
@@ -230,11 +230,12 @@ impl Cloth {
         energy + self.weight_energy(x)
     }
 
-    /// The Hessian over the unknowns, and its border. Of a guided node the rows and columns are those of its free
-    /// directions; across them stands a positive diagonal, which no force acts on.
+    /// Computes the Hessian over the unknowns, and its border. A guided node's rows and columns contain its free
+    /// directions only; the blocked directions get a positive diagonal, on which no force acts.
     ///
     /// `values` holds, in this order: the lower triangle by columns ([`Cloth::entries`]); the derivative of each clip's
-    /// summed gradient with respect to the unknowns, 3 × clips rows of [`Cloth::unknowns`] each; one number to ignore.
+    /// summed gradient with respect to the unknowns, as 3 × clips rows of [`Cloth::unknowns`] entries; one entry to
+    /// ignore.
     pub fn hessian(&self, curves: &Curves, x: &[f64], curvature: Curvature<'_>, values: &mut Vec<f64>) {
         let len = self.entries() + self.border_len() + 1;
         let twice = if self.is_tied() { self.entries() } else { 0 };
@@ -242,7 +243,7 @@ impl Cloth {
         values.resize(len + twice, 0.0);
         let targets = [&self.targets[0][..], &self.targets[1][..]];
         self.visit(&mut HessianPass { law: curves, x, curvature, targets, values });
-        // Elements list an entry and its mirror once; where both fall on one diagonal entry, it counts twice.
+        // Elements list an entry and its mirror image once; it counts twice if both fall on one diagonal entry.
         (0..twice).for_each(|place| values[place] += 2.0 * values[len + place]);
         values.truncate(len);
         let (lower, border) = values.split_at_mut(self.entries());
@@ -252,18 +253,18 @@ impl Cloth {
         }
     }
 
-    /// Filters the lower entries of a matrix to the directions in which guided nodes may move.
+    /// Projects the lower entries of a matrix onto the free directions of guided nodes.
     pub(crate) fn filter(&self, lower: &mut [f64]) {
         self.guides.iter().for_each(|guide| guide.filter(lower));
     }
 
-    /// Where the entry of two unknowns stands among the Hessian's values; `None` where it is zero in every state.
+    /// Position of an entry among the Hessian's values; `None` if it is zero in every state.
     pub fn entry(&self, first: usize, second: usize) -> Option<usize> {
         self.pattern.position(first.max(second), first.min(second))
     }
 
-    /// ∂(gradient)/∂kᵢ for every control value of a component's curve: one column of 3 × nodes each, N per unit of
-    /// stiffness.
+    /// ∂(gradient)/∂kᵢ for every control value of a component's curve, N per unit of stiffness: one column of 3 × nodes
+    /// entries each.
     pub fn parameter_gradient(
         &self,
         curves: &Curves,
@@ -284,15 +285,15 @@ impl Cloth {
         });
     }
 
-    /// All strains of a component, each with the area (m²) it stands for.
+    /// All strains of a component, each with the area (m²) it represents.
     pub fn strains(&self, component: Component, x: &[f64]) -> Vec<[f64; 2]> {
         let mut pass = StrainPass { x, component, strains: Vec::new() };
         self.visit(&mut pass);
         pass.strains
     }
 
-    /// Share of the sheet in which a component is strained beyond its curve's last control point, where its stress goes on
-    /// straight; 0 of a constant stiffness, which has no such place.
+    /// Share of the sheet in which a component's strain exceeds the last control point of its curve, where the stress
+    /// is extrapolated linearly; 0 for a constant stiffness.
     pub fn extrapolated(&self, curves: &Curves, component: Component, x: &[f64]) -> f64 {
         let Some(curve) = curves.get(component).filter(|curve| curve.len() > 1) else { return 0.0 };
         let last = curve.strains()[curve.len() - 1];
@@ -305,7 +306,7 @@ impl Cloth {
         if all > 0.0 { beyond / all } else { 0.0 }
     }
 
-    /// The gradient summed over each clip's nodes, N: the force that holds the clip, apart from its own weight.
+    /// Gradient summed over the nodes of each clip, N: the force that holds the clip, excluding the clip's own weight.
     pub fn clip_forces(&self, gradient: &[f64]) -> Vec<Vector3<f64>> {
         let mut forces = vec![Vector3::zeros(); self.clips];
         for (node, clip) in self.clip_of.iter().enumerate() {
@@ -316,12 +317,12 @@ impl Cloth {
         forces
     }
 
-    /// The membrane's strains to first order after a step, for [`Curvature::Mixed`].
+    /// First-order prediction of the membrane's strains after a step, for [`Curvature::Mixed`].
     pub(crate) fn predicted_strains(&self, x: &[f64], step: &[f64], strains: &mut Vec<f64>) {
         self.visit(&mut PredictedStrainPass { x, step, strains });
     }
 
-    /// True if a hinge turns by more than half a turn between two states: its angle then has jumped across ±π.
+    /// True if a hinge angle changes by more than half a turn between two states, that is, jumps across ±π.
     pub(crate) fn hinge_jumps(&self, x: &[f64], to: &[f64]) -> bool {
         let Some(Bending::DiscreteShells(hinges)) = &self.bending else { return false };
         hinges.iter().any(|hinge| {
@@ -332,7 +333,7 @@ impl Cloth {
         })
     }
 
-    /// True if a triangle turns over between two states of a planar problem, 3 stacked coordinates a node each.
+    /// True if a triangle flips between two states of a planar problem (3 stacked coordinates per node).
     pub fn turns_over(&self, x: &[f64], to: &[f64]) -> bool {
         let faces_up = |x: &[f64], nodes: [usize; 3]| {
             let [a, b, c] = gather::<3, 2>(nodes, x);
@@ -353,12 +354,12 @@ impl Cloth {
         self.planar
     }
 
-    /// The clip that holds a node, if one does.
+    /// The clip that holds a node, if any.
     pub(crate) fn clip_of(&self, node: usize) -> Option<usize> {
         self.clip_of[node]
     }
 
-    /// True if tied groups are parallel in a state.
+    /// True if the tied groups are parallel in a state.
     pub(crate) fn is_parallel(&self, x: &[f64]) -> bool {
         are_alike(&self.twins, x, self.mean_edge)
     }
@@ -400,28 +401,28 @@ impl Cloth {
         self.masses.iter().zip(x.chunks_exact(3)).map(node).sum()
     }
 
-    /// Elastic energy, J: the total without that of the weight.
+    /// Elastic energy, J: total energy without that of the weight.
     pub fn elastic_energy(&self, curves: &Curves, x: &[f64]) -> f64 {
         let mut pass = EnergyPass { law: curves, x, energy: 0.0 };
         self.visit(&mut pass);
         pass.energy
     }
 
-    /// Mass of every unknown, kg: of nodes that move alike, all of theirs.
+    /// Mass of every unknown, kg: the whole group's mass for tied nodes.
     pub(crate) fn unknown_masses(&self) -> Vec<f64> {
         let mut masses = vec![0.0; self.unknowns.len()];
         self.free.iter().for_each(|&(coordinate, unknown)| masses[unknown] += self.masses[coordinate / 3]);
         masses
     }
 
-    /// Projects a vector over the unknowns onto the directions in which guided nodes may move.
+    /// Projects a vector over the unknowns onto the free directions of guided nodes.
     pub(crate) fn project(&self, unknowns: &mut [f64]) {
         self.guides.iter().for_each(|guide| guide.project(unknowns));
     }
 
     /// Adds a multiple of every node's block to the lower entries of a matrix.
     pub(crate) fn add_blocks(&self, blocks: &[Matrix3<f64>], factor: f64, lower: &mut [f64]) {
-        // A node's unknowns follow one another.
+        // The unknowns of a node are consecutive.
         for pair in self.free.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
             for &(row_coordinate, row) in pair {
                 for &(column_coordinate, column) in pair.iter().filter(|&&(_, column)| column <= row) {
@@ -439,7 +440,7 @@ impl Cloth {
         &self.masses
     }
 
-    /// The triangles of the rest mesh.
+    /// Triangles of the rest mesh.
     pub(crate) fn triangles(&self) -> &[[usize; 3]] {
         &self.triangles
     }
@@ -449,23 +450,23 @@ impl Cloth {
     }
 }
 
-/// How large the forces at every node are, by which an imbalance is judged.
+/// Magnitudes of the forces at every node, against which an imbalance is judged.
 #[derive(Debug, Clone, Default)]
 pub struct ForceScale {
     /// Σ over a node's elements of their force on it, N.
     pub magnitude: Vec<f64>,
-    /// Stiffness through which an error of position becomes a force, N/m.
+    /// Stiffness that converts a position error to a force error, N/m.
     pub stiffness: Vec<f64>,
 }
 
 impl ForceScale {
-    /// Room for a cloth's nodes.
+    /// Allocates for a cloth's nodes.
     pub fn new(nodes: usize) -> Self {
         Self { magnitude: vec![0.0; nodes], stiffness: vec![0.0; nodes] }
     }
 }
 
-/// The one place where the parts of a problem meet the loops over their elements.
+/// Runs a pass over the membrane and bending elements of a problem. Every loop over elements goes through here.
 fn visit(membrane: &Membrane, bending: Option<&Bending>, planar: bool, pass: &mut impl Pass) {
     membrane.visit(planar, pass);
     if let Some(bending) = bending {

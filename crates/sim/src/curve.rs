@@ -7,11 +7,11 @@
 //! below zero                      see NegativeStrain
 //! ```
 //!
-//! The slopes are linear in the control values, so stress, tangent and energy are linear in them too. That makes a fit
-//! of the kᵢ a linear problem at known strains, and [`stability_rows`] linear constraints.
+//! The slopes are linear in the control values, and so are stress, tangent and energy. At known strains, fitting the kᵢ
+//! is therefore a linear problem, and [`stability_rows`] are linear constraints.
 //!
-//! Source: Miguel et al. 2012, §4.2 (Hermite stiffness, one control point = the linear model); the slopes, the end and
-//! the compression rule are ours: docs/model.md.
+//! Source: Miguel et al. 2012, §4.2 (Hermite stiffness, one control point = the linear model). Slopes, end and
+//! compression rule are specific to this project: docs/model.md.
 
 mod polynomial;
 pub mod soundness;
@@ -24,16 +24,16 @@ use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use spline::{LARGEST, check_strains, segment_rows, slope_row};
 
-/// How stress is read at negative strain. Every rule keeps stress and tangent continuous at zero, except `Slack`.
+/// Stress at negative strain. Every rule except `Slack` keeps stress and tangent continuous at zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NegativeStrain {
     /// σ(−ε) = −σ(ε): shear and bending.
     Odd,
-    /// σ = k₀ε: compression with the stiffness at zero, for strains that are changes of length.
+    /// σ = k₀ε: compression with the stiffness at zero, for engineering strains.
     Linear,
-    /// σ = k₀[1 − (1 + 2ε)^(−½)]: the same for Green strain, so that the nominal stress is k₀(λ − 1). Finite at
-    /// collapse, where linear StVK would lose its stiffness at ε = −1/3.
+    /// σ = k₀[1 − (1 + 2ε)^(−½)]: the equivalent for Green strain; the nominal stress is k₀(λ − 1). Finite at collapse,
+    /// where linear StVK would lose its stiffness at ε = −1/3.
     Green,
     /// σ = 0: tension only.
     Slack,
@@ -48,7 +48,7 @@ pub struct Response {
     pub tangent: f64,
 }
 
-/// One cubic piece: k = c₀ + c₁t + c₂t² + c₃t³ with t = ε − start.
+/// A cubic piece: k = c₀ + c₁t + c₂t² + c₃t³ with t = ε − start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Segment {
     start: f64,
@@ -68,7 +68,7 @@ impl Segment {
         b + t * (2.0 * c + t * 3.0 * d)
     }
 
-    /// ∫ (start + t) k(t) dt from 0 to t, added to the energy at the start.
+    /// Energy density at t: ∫ (start + t) k(t) dt from 0 to t, plus the energy at the start.
     fn energy(&self, t: f64) -> f64 {
         let [a, b, c, d] = self.coefficients;
         let first = t * (a + t * (b / 2.0 + t * (c / 3.0 + t * d / 4.0)));
@@ -77,7 +77,7 @@ impl Segment {
     }
 }
 
-/// All that makes a curve: it is stored as this, and checked when it comes back.
+/// The data that define a curve. Serialised in this form and validated on deserialisation.
 #[derive(Serialize, Deserialize)]
 struct ControlPoints {
     strains: Vec<f64>,
@@ -107,7 +107,7 @@ pub struct StiffnessCurve {
     stiffnesses: Vec<f64>,
     negative: NegativeStrain,
     segments: Vec<Segment>,
-    /// Energy density, stress and tangent at the last control point; at zero, if it is the only one.
+    /// Energy density, stress and tangent at the last control point, or at zero if it is the only one.
     end: (f64, Response),
 }
 
@@ -115,11 +115,11 @@ impl StiffnessCurve {
     /// A curve through control points.
     ///
     /// * `strains` — ascending, the first 0 unless it is the only one
-    /// * `stiffnesses` — as many, N/m (bending: N·m per the hinge's own strain)
+    /// * `stiffnesses` — one per strain, N/m (bending: N·m per the hinge's own strain)
     ///
     /// # Errors
-    /// Empty or unequal lists; values that are not finite, or of more than 1e50; strains that do not ascend, by 1e-50 at
-    /// least, or do not start at zero.
+    /// Empty lists or lists of unequal length; values that are not finite or exceed 1e50; strains that do not start at
+    /// zero, or that do not ascend by at least 1e-50.
     pub fn new(strains: Vec<f64>, stiffnesses: Vec<f64>, negative: NegativeStrain) -> Result<Self> {
         check_strains(&strains)?;
         if stiffnesses.len() != strains.len() {
@@ -145,7 +145,7 @@ impl StiffnessCurve {
             segments.push(segment);
         }
         let end = match segments.last() {
-            // A line from zero on: at a far point of it small strains would be lost in the difference.
+            // A straight line from zero: starting it at a distant point would cancel small strains.
             None => (0.0, Response { stress: 0.0, tangent: stiffnesses[0] }),
             Some(last) => {
                 let strain = strains[strains.len() - 1];
@@ -174,7 +174,7 @@ impl StiffnessCurve {
         &self.stiffnesses
     }
 
-    /// How stress is read at negative strain.
+    /// Rule for negative strains.
     pub fn negative(&self) -> NegativeStrain {
         self.negative
     }
@@ -184,15 +184,15 @@ impl StiffnessCurve {
         self.strains.len()
     }
 
-    /// False: a curve has at least one control point.
+    /// Always false: a curve has at least one control point.
     pub fn is_empty(&self) -> bool {
         self.strains.is_empty()
     }
 
-    /// The same strains with other stiffnesses.
+    /// The same curve with other stiffnesses.
     ///
     /// # Errors
-    /// As [`StiffnessCurve::new`].
+    /// Those of [`StiffnessCurve::new`].
     pub fn with_stiffnesses(&self, stiffnesses: Vec<f64>) -> Result<Self> {
         Self::new(self.strains.clone(), stiffnesses, self.negative)
     }
@@ -223,10 +223,10 @@ impl StiffnessCurve {
         self.response(strain).stress
     }
 
-    /// An upper bound of dσ/dε from zero on, which it meets where the curve is steepest at a control point.
+    /// Upper bound of dσ/dε from zero on; exact if the curve is steepest at a control point.
     pub fn greatest_tangent(&self) -> f64 {
         match stability_rows(&self.strains) {
-            // Bernstein coefficients bound the tangent from above as from below.
+            // Bernstein coefficients bound the tangent from above as well as from below.
             Ok(rows) => (rows * nalgebra::DVector::from_column_slice(&self.stiffnesses)).max(),
             Err(_) => self.end.1.tangent,
         }
@@ -246,7 +246,7 @@ impl StiffnessCurve {
         match self.negative {
             NegativeStrain::Odd => self.positive_energy(-strain),
             NegativeStrain::Linear => 0.5 * k * strain * strain,
-            // ε − √(1+2ε) + 1 = ½(λ − 1)², written without cancellation.
+            // ε − √(1+2ε) + 1 = ½(λ − 1)², in a form without cancellation.
             NegativeStrain::Green => {
                 let stretch = (1.0 + 2.0 * strain).max(COLLAPSED).sqrt();
                 0.5 * k * (stretch - 1.0) * (stretch - 1.0)
@@ -255,12 +255,12 @@ impl StiffnessCurve {
         }
     }
 
-    /// ∂σ/∂kᵢ at a strain for every control point, into `weights`.
+    /// Writes ∂σ/∂kᵢ at a strain, for every control point, to `weights`.
     ///
     /// # Panics
-    /// If `weights` has another length than the curve has control points.
+    /// If the length of `weights` differs from the number of control points.
     pub fn weights(&self, strain: f64, weights: &mut [f64]) {
-        assert_eq!(weights.len(), self.len(), "one weight a control point");
+        assert_eq!(weights.len(), self.len(), "one weight per control point");
         weights.fill(0.0);
         if strain >= 0.0 {
             stress_row(&self.strains, strain, weights);
@@ -268,7 +268,7 @@ impl StiffnessCurve {
             stress_row(&self.strains, -strain, weights);
             weights.iter_mut().for_each(|weight| *weight = -*weight);
         } else {
-            // In compression the stress is proportional to k₀, whatever the rule.
+            // In compression the stress is proportional to k₀ under every rule.
             weights[0] = match self.negative {
                 NegativeStrain::Green => 1.0 - 1.0 / (1.0 + 2.0 * strain).max(COLLAPSED).sqrt(),
                 NegativeStrain::Slack => 0.0,
@@ -277,10 +277,10 @@ impl StiffnessCurve {
         }
     }
 
-    /// The curve through more, equidistant control points over [0, `last`].
+    /// Resamples the curve at equidistant control points over [0, `last`].
     ///
     /// # Errors
-    /// A range that is not positive, or no point.
+    /// A range that is not positive, or zero points.
     pub fn resampled(&self, points: usize, last: f64) -> Result<Self> {
         let strains = equidistant(points, last);
         let stiffnesses = strains.iter().map(|&strain| self.stiffness(strain)).collect();
@@ -313,21 +313,21 @@ impl StiffnessCurve {
         }
     }
 
-    /// Where the straight line begins that ends the curve.
+    /// Strain beyond which the curve is a straight line.
     fn straight_from(&self) -> f64 {
         if self.segments.is_empty() { 0.0 } else { self.strains[self.strains.len() - 1] }
     }
 
-    /// The piece that holds a strain ≥ 0; `None` beyond the last control point.
+    /// The piece that contains a strain ≥ 0; `None` beyond the last control point.
     fn segment(&self, strain: f64) -> Option<&Segment> {
         self.segments.get(segment_at(&self.strains, strain)?)
     }
 }
 
-/// Smallest 1 + 2ε that compression is evaluated at: a collapsed triangle has 0, rounding may take it below.
+/// Smallest 1 + 2ε at which compression is evaluated. A collapsed triangle has 0, and rounding may go below.
 const COLLAPSED: f64 = 1e-12;
 
-/// `points` equidistant strains from 0 to `last`; a single point stands at 0.
+/// `points` equidistant strains from 0 to `last`; a single point is at 0.
 pub fn equidistant(points: usize, last: f64) -> Vec<f64> {
     match points {
         0 | 1 => vec![0.0; points],
@@ -335,14 +335,14 @@ pub fn equidistant(points: usize, last: f64) -> Vec<f64> {
     }
 }
 
-/// The segment that a strain ≥ 0 lies in, its upper end included; `None` beyond the last control point.
+/// The segment that contains a strain ≥ 0, upper end included; `None` beyond the last control point.
 fn segment_at(strains: &[f64], strain: f64) -> Option<usize> {
     let index = strains[1..].partition_point(|&end| end < strain);
-    // A NaN is below no end; it belongs to no segment.
+    // A NaN belongs to no segment.
     strains[1..].get(index).filter(|&&end| strain <= end).map(|_| index)
 }
 
-/// Stress at a strain ≥ 0 as a row over the control values, added to `row`.
+/// Adds the stress at a strain ≥ 0, as a row over the control values, to `row`.
 fn stress_row(strains: &[f64], strain: f64, row: &mut [f64]) {
     let last = strains.len() - 1;
     if last == 0 {
@@ -387,7 +387,7 @@ mod tests {
             let curve = random_curve(&mut rng, RULES[trial % 4]);
             let strain: f64 = rng.random_range(-0.3..0.5);
             let h = 1e-5;
-            // A difference across a kink of the tangent is of lower order: keep away from the control points.
+            // Differences across a kink of the tangent are of lower order: stay away from the control points.
             if curve.strains().iter().any(|knot| (strain.abs() - knot).abs() < 2.0 * h) {
                 continue;
             }
@@ -429,7 +429,7 @@ mod tests {
             assert_eq!(linear.stress(strain), 4.0 * strain);
             assert_eq!(linear.energy(strain), 2.0 * strain * strain);
         }
-        // Wherever its one point stands.
+        // The position of a single control point has no effect.
         let far = StiffnessCurve::new(vec![1e6], vec![4.0], NegativeStrain::Linear).unwrap();
         assert_eq!((far.stress(1e-3), far.energy(1e-3)), (linear.stress(1e-3), linear.energy(1e-3)));
     }
@@ -491,7 +491,7 @@ mod tests {
         assert_eq!(point(&[0.0, f64::NAN], &[1.0; 2]), 1);
         assert_eq!(point(&[0.1, 0.2], &[1.0; 2]), 0);
         assert_eq!(point(&[0.0, 0.2], &[1.0, f64::INFINITY]), 1);
-        // Slopes and energies of these would be beyond all numbers.
+        // Slopes and energies of these would overflow.
         assert_eq!(point(&[0.0, 1e-60], &[1.0; 2]), 1);
         assert_eq!(point(&[0.0, 1e60], &[1.0; 2]), 1);
         assert_eq!(point(&[0.0, 0.2], &[-1e60, 1.0]), 0);

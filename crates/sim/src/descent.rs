@@ -1,14 +1,14 @@
-//! From any shape to a shape at rest: the cloth sinks without momentum, and the end is an equilibrium.
+//! Descent from any shape to a shape at rest: the cloth sinks without momentum and ends in an equilibrium.
 //!
 //! ```text
 //! minimise over x′    E(x′) + Σ m |x′ − x|² / (2 h²)        h grows from step to step, x′ is the next x
 //! ```
 //!
-//! Every step is one of implicit Euler from a standstill: the mass keeps it well posed where the cloth is slack, flat or
-//! folding, and the energy falls in each. The way down hardly depends on the mesh, where Newton's method from a flat sheet
-//! lands in any of many folded equilibria.
+//! Every step is one of implicit Euler from rest. The mass keeps it well posed where the cloth is slack, flat or
+//! folding, and the energy falls in every step. The path hardly depends on the mesh, whereas Newton's method from a
+//! flat sheet ends in one of many folded equilibria.
 //!
-//! Source: the proximal point method, Rockafellar 1976, in the metric of the masses.
+//! Source: proximal point method, Rockafellar 1976, in the mass metric.
 
 use crate::cloth::Cloth;
 use crate::dynamics::{self, Integrator, LinearSolver, Motion, Newton};
@@ -16,16 +16,16 @@ use crate::equilibrium::{self, Equilibrium, Remedies, Solver};
 use crate::error::{Error, Result};
 use crate::material::Curves;
 
-/// How a cloth is let down.
+/// Settings of a descent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// First step, s: in it the cloth falls by about half g h²; default 0.01.
+    /// First step, s; the cloth falls by about g h²/2 in it. Default 0.01.
     pub step: f64,
-    /// The factor from a step to the next where that was easy; default 1.25.
+    /// Growth factor of the step after an easy one; default 1.25.
     pub growth: f64,
-    /// Most steps; default 200.
+    /// Maximum number of steps; default 200.
     pub max_steps: usize,
-    /// The end of it: a solve for the equilibrium itself.
+    /// Settings of the final solve for the equilibrium.
     pub equilibrium: equilibrium::Settings,
 }
 
@@ -36,47 +36,47 @@ impl Default for Settings {
     }
 }
 
-/// How a descent ended.
+/// Outcome of a descent.
 #[must_use]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Descent {
-    /// The equilibrium at its end, or why there is none.
+    /// The final equilibrium, or the reason for its absence.
     pub equilibrium: Equilibrium,
     /// Steps taken.
     pub steps: usize,
-    /// How far the node that moves most moved in the solve after the last step, m.
+    /// Largest displacement of a node in the solve after the last step, m.
     pub last_way: f64,
-    /// What was done beside plain Newton steps, in all of it; steps that could not be solved count as halved.
+    /// Numerical interventions in all steps and solves; steps that could not be solved count as halved.
     pub remedies: Remedies,
 }
 
-/// Steps of fewer iterations were easy.
+/// A step with fewer iterations is easy.
 const EASY: usize = 12;
 
-/// Steps are solved to this share of the typical force at a node: only their end counts.
+/// Steps are solved to this share of the typical nodal force: only their end matters.
 const TOLERANCE: f64 = 1e-3;
 
-/// The last solve comes after a step that moves every node by less than this share of the mean edge, and whose pull has
-/// fallen to this share of the strongest one.
+/// The final solve follows a step that moves every node by less than this share of the mean edge and whose driving
+/// acceleration has fallen to the share `WEAK` of the strongest one.
 const NEAR: f64 = 1e-3;
 const WEAK: f64 = 1e-2;
 
-/// A step that moves every node by less than this share of the mean edge is none.
+/// A step that moves every node by less than this share of the mean edge counts as no motion.
 const NOTHING: f64 = 1e-9;
 
-/// The shortest step, as a share of the first.
+/// Shortest step, as a share of the first.
 const SHORTEST: f64 = 1e-4;
 
-/// Lets a cloth down from a shape, which is replaced by the one at rest.
+/// Lets a cloth descend from a shape, which is replaced by the shape at rest.
 ///
-/// A step that cannot be solved is halved. The steps end when they hardly move the cloth; a solve for the equilibrium
-/// follows, and from where that fails further steps.
+/// A step that cannot be solved is halved. When the steps hardly move the cloth, a solve for the equilibrium follows;
+/// if it fails, more steps are taken.
 ///
-/// * `x` — 3 stacked coordinates a node, m; held nodes at their places
-/// * `watch` — is told the number of each step and how far it moved the node that moves most, m
+/// * `x` — 3 stacked coordinates per node, m; held nodes at their positions
+/// * `watch` — receives the number of each step and the largest displacement of a node in it, m
 ///
 /// # Errors
-/// A setting or a position that is not finite or out of its range; cloth without mass.
+/// A setting or a position that is not finite or out of range; cloth without mass.
 pub fn descend(
     cloth: &Cloth,
     curves: &Curves,
@@ -109,7 +109,7 @@ pub fn descend(
                 continue;
             }
             let way = greatest_way(x, motion.positions());
-            // What drives the cloth on, m/s².
+            // Driving acceleration, m/s².
             let pull = way / (length * length);
             strongest = strongest.max(pull);
             x.copy_from_slice(motion.positions());
@@ -130,13 +130,13 @@ pub fn descend(
         if equilibrium.converged() || steps >= settings.max_steps || length <= SHORTEST * settings.step {
             return Ok(Descent { equilibrium, steps, last_way, remedies });
         }
-        // What the solve has made of it is no better start than where the steps ended.
+        // The state after a failed solve is no better start than the end of the steps.
         x.copy_from_slice(&before);
         near *= 0.1;
     }
 }
 
-/// One step from a standstill.
+/// Settings of one step from rest.
 fn still(step: f64) -> dynamics::Settings {
     let newton = Newton::Converged { tolerance: TOLERANCE };
     let integrator = Integrator::ImplicitEuler { newton, linear: LinearSolver::Direct };

@@ -10,20 +10,20 @@ use std::f64::consts::TAU;
 
 /// A disc about the origin: a node at the centre, and 6k nodes around it on the k-th ring.
 ///
-/// Rings are turned against each other, so that no direction is marked by rows of alike triangles. Then all nodes but
-/// those of the rim, and of the ring that is kept, move to where triangles are nearly equilateral: hinges then resist
-/// bending alike in all directions, by little more than they do in equilateral ones.
+/// Rings are rotated against each other so that rows of similar triangles mark no direction. All nodes except those of
+/// the rim and of the kept ring then move until the triangles are nearly equilateral. Hinges then resist bending
+/// alike in all directions, and only slightly more than in equilateral triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
     /// Radius, m.
     pub radius: f64,
-    /// Rings around the centre, at least 1.
+    /// Number of rings around the centre, at least 1.
     pub rings: usize,
-    /// The ring that keeps its radius, this share of `radius` as that of all rings: where a support ends, say.
+    /// Ring whose radius stays at its share of `radius`, for example at the edge of a support.
     pub kept: Option<usize>,
 }
 
-/// Sweeps of relaxation; more change the mean rigidity by less than 1 %.
+/// Relaxation sweeps; more change the mean rigidity by less than 1 %.
 const SWEEPS: usize = 60;
 
 impl Disc {
@@ -32,15 +32,15 @@ impl Disc {
         first(self.rings + 1)
     }
 
-    /// The nodes of a ring, in the sense of rotation from x to y; ring 0 is the centre.
+    /// Nodes of a ring, in the direction of rotation from x to y; ring 0 is the centre.
     pub fn ring(&self, ring: usize) -> std::ops::Range<usize> {
         first(ring)..first(ring + 1)
     }
 
-    /// The disc as a flat mesh in the plane z = 0; material coordinates equal x and y.
+    /// Builds the disc as a flat mesh in the plane z = 0; material coordinates equal x and y.
     ///
     /// # Errors
-    /// No ring, or a radius that is not positive.
+    /// No rings, or a radius that is not positive.
     pub fn mesh(&self) -> Result<Mesh> {
         if self.rings == 0 {
             return Err(Error::InvalidValue { field: "rings", value: 0.0, expected: "at least 1" });
@@ -65,24 +65,24 @@ impl Disc {
     }
 }
 
-/// The first node of a ring.
+/// First node of a ring.
 fn first(ring: usize) -> usize {
     if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) }
 }
 
-/// Nodes on a ring.
+/// Number of nodes on a ring.
 fn count(ring: usize) -> usize {
     if ring == 0 { 1 } else { 6 * ring }
 }
 
-/// Where a node of a ring is, rad; indices past a full turn go on.
+/// Angle of a ring's node, rad; indices beyond a full turn continue past 2π.
 fn angle(ring: usize, index: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let offset = (ring as f64 * GOLDEN).fract();
     TAU * (index as f64 + offset) / count(ring) as f64
 }
 
-/// The triangles between a ring and the one inside it: of both rings' next nodes the nearer one makes the next triangle.
+/// Triangles between a ring and the one inside it. The nearer of the two rings' next nodes completes the next triangle.
 fn band(ring: usize) -> Vec<[usize; 3]> {
     let node = |ring: usize, index: usize| first(ring) + index % count(ring);
     if ring == 1 {
@@ -124,7 +124,7 @@ mod tests {
             assert!(disc.ring(ring).all(on));
         }
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.double_area(t)).sum();
-        // A polygon of 60 corners.
+        // A polygon with 60 corners.
         let polygon = 0.5 * 60.0 * (TAU / 60.0).sin() * 0.15 * 0.15;
         assert!((area - polygon).abs() < 1e-12, "{area} {polygon}");
         assert!(matches!(Disc { radius: 0.1, rings: 0, kept: None }.mesh(), Err(Error::InvalidValue { .. })));
@@ -140,7 +140,7 @@ mod tests {
         let shares = (0..mesh.triangles.len()).map(|triangle| {
             let [a, b, c] = mesh.triangles[triangle].map(|node| mesh.material[node]);
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-            // 1 of an equilateral triangle, 0.58 of half a square.
+            // 1 for an equilateral triangle, 0.58 for half a square.
             mesh.double_area(triangle) / (longest * longest) / 0.75f64.sqrt()
         });
         let shares: Vec<f64> = shares.collect();
@@ -148,14 +148,14 @@ mod tests {
         assert!(mean > 0.8 && shares.iter().all(|&share| share > 0.4), "{mean} {shares:.2?}");
     }
 
-    /// Effective rigidity over the hinges' stiffness of a mesh that is rolled along a direction: what lies in a circle.
+    /// Effective rigidity within a circle over the hinge stiffness, for a mesh rolled along a direction.
     fn rigidity(mesh: &Mesh, degrees: f64, within: f64) -> f64 {
         let radius = 1e3;
         let place = |m: &Vector2<f64>| <[f64; 3]>::from(rolled(*m, f64::to_radians(degrees), radius));
         let x: Vec<f64> = mesh.material.iter().flat_map(place).collect();
         let energy = |hinge: &Hinge| {
             let [a, b] = [0, 1].map(|end| mesh.material[hinge.nodes[end]].norm());
-            // An edge on the circle belongs to it by half.
+            // Half of an edge on the circle belongs to it.
             let share = [a, b].map(|r| if (r - within).abs() < 1e-9 { 0.5 } else { f64::from(r < within) });
             let [strain] = hinge.strains(&gather(hinge.nodes, &x));
             share[0].min(share[1]) * 0.5 * strain * strain * Element::<4, 3, 1>::area(hinge)
@@ -171,7 +171,8 @@ mod tests {
 
     #[test]
     fn hinges_resist_bending_nearly_as_in_equilateral_triangles_and_alike_in_all_directions() {
-        // Of endless equilateral triangles the rigidity is exactly three times the stiffness, in all directions.
+        // The rigidity of an infinite sheet of equilateral triangles is exactly three times the hinge stiffness, in all
+        // directions.
         let expected = HINGE_STRAIN_PER_CURVATURE;
         for rings in [20, 40] {
             let kept = rings * 3 / 5;

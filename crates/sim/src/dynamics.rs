@@ -1,17 +1,17 @@
-//! Cloth in motion: time steps of implicit Euler or Runge–Kutta, with an account of energy and work.
+//! Cloth in motion: implicit Euler or Runge–Kutta time steps, with a balance of energy and work.
 //!
 //! ```text
 //! M ẍ = −∇E(x) − C(x) ẋ + B (w − ẋ)        M lumped masses, C damping, B drag of the air, w the wind
 //! ```
 //!
-//! An implicit step is solved to a tolerance, or linearised once as published; by factorisation or by conjugate gradients.
-//! Held nodes stay where they are; guided ones keep to their directions.
+//! An implicit step is solved to a tolerance, or linearised once as published, by factorisation or conjugate gradients.
+//! Held nodes keep their positions, guided nodes their directions.
 //!
 //! ```text
 //! kinetic + elastic + weight  =  their sum at the start + work of the wind − damping − numerical loss
 //! ```
 //!
-//! Source: Baraff and Witkin 1998; Strohkorb 2019, §3.3. The damping law is ours: see [`Damping`].
+//! Source: Baraff and Witkin 1998; Strohkorb 2019, §3.3. The damping law is specific to this project: see [`Damping`].
 
 mod damping;
 mod energy;
@@ -37,23 +37,23 @@ use implicit_euler::ImplicitEuler;
 use runge_kutta::RungeKutta;
 use state::State;
 
-/// A share of the energy that no stable integrator makes.
+/// Energy gain, as a share, that marks an integrator as unstable.
 const MADE: f64 = 0.1;
 
-/// The memory of an integrator.
+/// State of an integrator.
 enum Method<'a> {
     Implicit(Box<ImplicitEuler<'a>>),
     Explicit(Box<RungeKutta>),
 }
 
-/// A cloth on its way.
+/// A cloth in motion.
 pub struct Motion<'a> {
     cloth: &'a Cloth,
     curves: &'a Curves,
     settings: Settings,
     method: Method<'a>,
     state: State,
-    /// The state before the last step.
+    /// State before the last step.
     before: State,
     /// Total energy at the start, J.
     start: f64,
@@ -62,13 +62,13 @@ pub struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// A cloth at rest in some state.
+    /// Starts from rest at a state.
     ///
-    /// * `positions` — 3 a node, m; held nodes where they shall stay
+    /// * `positions` — 3 per node, m; held nodes at their fixed positions
     ///
     /// # Errors
-    /// A setting or a position that is not finite or out of its range; cloth without mass; a step of Runge–Kutta beyond
-    /// [`stable_step`], which is named.
+    /// A setting or a position that is not finite or out of range; cloth without mass; a Runge–Kutta step beyond
+    /// [`stable_step`], which the error reports.
     pub fn new(
         cloth: &'a Cloth,
         curves: &'a Curves,
@@ -79,12 +79,12 @@ impl<'a> Motion<'a> {
         Self::with_velocities(cloth, curves, positions, velocities, settings)
     }
 
-    /// The same, moving at the start.
+    /// Starts with velocities.
     ///
-    /// * `velocities` — 3 a node, m/s; those of held nodes, and of guided ones across their directions, are ignored
+    /// * `velocities` — 3 per node, m/s; ignored for held nodes, and across the free directions of guided ones
     ///
     /// # Errors
-    /// As [`Motion::new`].
+    /// Those of [`Motion::new`].
     pub fn with_velocities(
         cloth: &'a Cloth,
         curves: &'a Curves,
@@ -102,12 +102,12 @@ impl<'a> Motion<'a> {
             }
         }
         if let Some(&mass) = cloth.masses().iter().find(|&&mass| !(mass > 0.0)) {
-            let expected = "more than 0, in kg/m²: what has no mass has no motion";
+            let expected = "more than 0, in kg/m²: motion needs mass";
             return Err(Error::InvalidValue { field: "areal_density", value: mass, expected });
         }
         let mut free = vec![0.0; cloth.unknowns()];
         let mut state = State { velocities: vec![0.0; positions.len()], positions };
-        // Of nodes that move alike the first one's velocity is that of all.
+        // Tied nodes take the velocity of the first one.
         for (value, &coordinate) in free.iter_mut().zip(cloth.unknown_coordinates()) {
             *value = velocities[coordinate];
         }
@@ -143,7 +143,7 @@ impl<'a> Motion<'a> {
         Ok(motion)
     }
 
-    /// Moves on by one step. One that ends in numbers that are not finite changes nothing.
+    /// Advances by one step. A step that ends in non-finite numbers changes nothing.
     pub fn step(&mut self) -> Step {
         let time = self.time();
         self.before.positions.copy_from_slice(&self.state.positions);
@@ -174,12 +174,12 @@ impl<'a> Motion<'a> {
         step
     }
 
-    /// Where the nodes are, 3 a node, m.
+    /// Positions of the nodes, 3 per node, m.
     pub fn positions(&self) -> &[f64] {
         &self.state.positions
     }
 
-    /// How they move, 3 a node, m/s.
+    /// Velocities of the nodes, 3 per node, m/s.
     pub fn velocities(&self) -> &[f64] {
         &self.state.velocities
     }
@@ -189,7 +189,7 @@ impl<'a> Motion<'a> {
         self.steps as f64 * self.settings.step
     }
 
-    /// Energies, and the account since the start.
+    /// Energies, and their balance since the start.
     pub fn energies(&self) -> Energies {
         self.energies
     }
@@ -200,8 +200,9 @@ impl<'a> Motion<'a> {
         squares.fold(0.0, f64::max).sqrt()
     }
 
-    /// True if there is more energy than at the start and from the air, by a tenth of what moves or is strained. Damping, which
-    /// only takes, does not count: it is known to first order in the step.
+    /// True if the energy exceeds the initial energy plus the work of the air by more than a tenth of the larger of
+    /// kinetic and elastic energy. Damping, which only dissipates, is ignored: it is known only to first order in the
+    /// step.
     fn has_made_energy(&self) -> bool {
         let Energies { kinetic, elastic, wind, .. } = self.energies;
         let made = self.energies.total() - self.start - wind;

@@ -1,4 +1,4 @@
-//! One element's mathematics, and the sums over all elements of a kind.
+//! The mathematics of one element, and the sums over all elements of a kind.
 //!
 //! Every element of every model is **strain measure × law → energy**:
 //!
@@ -10,7 +10,7 @@
 //!
 //! T is diagonal where every component has its own curve ([`law`](crate::law)).
 //!
-//! An element sees `N` coordinates a node: 3 in space, 2 where the motion is planar.
+//! An element sees `N` coordinates per node: 3 in space, 2 in planar motion.
 //!
 //! Source: Miguel et al. 2012, §4.1.
 
@@ -26,22 +26,22 @@ pub type Block<const N: usize> = SMatrix<f64, N, N>;
 
 /// `S` strains over `K` nodes with `N` coordinates each: springs (2 nodes, 1 strain), triangles (3, 3), hinges (4, 1).
 pub trait Element<const K: usize, const N: usize, const S: usize> {
-    /// The nodes.
+    /// Node indices.
     fn nodes(&self) -> [usize; K];
 
     /// The component of each strain.
     fn components(&self) -> [Component; S];
 
-    /// The area that the element's energy density is integrated over, m².
+    /// Area over which the energy density is integrated, m².
     fn area(&self) -> f64;
 
     /// The strains (bending: 1/m).
     fn strains(&self, x: &[Point<N>; K]) -> [f64; S];
 
-    /// Their derivatives with respect to every node, 1/m.
+    /// Derivatives of the strains with respect to every node, 1/m.
     fn gradients(&self, x: &[Point<N>; K]) -> [[Point<N>; K]; S];
 
-    /// Strains and gradients together, for elements that share much between them.
+    /// Strains and gradients together, for elements where they share work.
     #[inline(always)]
     fn evaluate(&self, x: &[Point<N>; K]) -> ([f64; S], [[Point<N>; K]; S]) {
         (self.strains(x), self.gradients(x))
@@ -50,11 +50,11 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
     /// Adds the geometric part Σ_c σ_c ∇²ε_c to the blocks `[a][b]` with 1 ≤ b ≤ a; see [`complete`] for node 0.
     fn add_geometric(&self, x: &[Point<N>; K], stress: &[f64; S], blocks: &mut [[Block<N>; K]; K]);
 
-    /// The same, changed as little as is simple so that it is positive semi-definite.
+    /// Adds the geometric part with a simple, small change that makes it positive semi-definite.
     fn add_clamped(&self, x: &[Point<N>; K], stress: &[f64; S], blocks: &mut [[Block<N>; K]; K]);
 }
 
-/// The nodes' coordinates, from three stacked coordinates a node.
+/// Coordinates of the nodes, from three stacked coordinates per node.
 #[inline(always)]
 pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [Point<N>; K] {
     let mut points = [Point::<N>::zeros(); K];
@@ -64,8 +64,8 @@ pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [
     points
 }
 
-/// The blocks of node 0, from those of the others: moving all nodes alike changes no strain, so every row of blocks of an
-/// element's Hessian sums to zero. A third of a hinge's work is saved.
+/// Fills in the blocks of node 0. Moving all nodes alike changes no strain, so every row of blocks of an element's
+/// Hessian sums to zero. Saves a third of a hinge's work.
 #[inline(always)]
 pub fn complete<const K: usize, const N: usize>(blocks: &mut [[Block<N>; K]; K]) {
     let mut corner = Block::zeros();
@@ -80,20 +80,20 @@ pub fn complete<const K: usize, const N: usize>(blocks: &mut [[Block<N>; K]; K])
     blocks[0][0] = corner;
 }
 
-/// Which matrix a Newton step is made with.
+/// Matrix used for a Newton step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curvature<'a> {
     /// The true second derivative.
     Full,
-    /// Geometric part from the given strains instead of the true ones, `S` an element.
+    /// Geometric part at the given strains instead of the true ones, `S` per element.
     Mixed(&'a [f64]),
     /// Geometric part clamped to be positive semi-definite, element by element.
     Clamped,
-    /// No geometric part, and no softening: the matrix of damping in proportion to stiffness.
+    /// Neither geometric part nor softening: the matrix of stiffness-proportional damping.
     Material,
 }
 
-/// A pass over all elements of the cloth, whatever their kind.
+/// A pass over all elements of the cloth, of any kind.
 pub(crate) trait Pass {
     /// Visits the membrane's or the bending's elements; `part` is 0 or 1.
     fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
@@ -103,7 +103,7 @@ pub(crate) trait Pass {
     );
 }
 
-/// Σ energies, J.
+/// Sums energies, J.
 pub(crate) struct EnergyPass<'a, L> {
     pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
@@ -124,14 +124,14 @@ impl<L: Law> Pass for EnergyPass<'_, L> {
     }
 }
 
-/// Σ gradients, N, and what rounding may make of each, N per m of coordinate error.
+/// Sums gradients, N, and estimates their rounding errors, N per m of coordinate error.
 pub(crate) struct GradientPass<'a, L> {
     pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
     pub(crate) gradient: &'a mut [f64],
-    /// Per node: Σ over elements of the force's size, N.
+    /// Per node: Σ over elements of the force magnitude, N.
     pub(crate) magnitude: &'a mut [f64],
-    /// Per node: Σ A |T_cc| |∇ε_c|², the stiffness through which an error of position becomes a force, N/m.
+    /// Per node: Σ A |T_cc| |∇ε_c|², the stiffness that converts a position error to a force error, N/m.
     pub(crate) stiffness: &'a mut [f64],
     pub(crate) energy: f64,
 }
@@ -166,12 +166,12 @@ impl<L: Law> Pass for GradientPass<'_, L> {
     }
 }
 
-/// Σ Hessians, scattered through precomputed targets.
+/// Sums Hessians, scattered through precomputed targets.
 pub(crate) struct HessianPass<'a, L> {
     pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
     pub(crate) curvature: Curvature<'a>,
-    /// Per part: where each lower entry of each element goes, in the order of [`lower_entries`].
+    /// Per part: destination of each lower entry of each element, in the order of [`lower_entries`].
     pub(crate) targets: [&'a [u32]; 2],
     pub(crate) values: &'a mut [f64],
 }
@@ -193,7 +193,7 @@ impl<L: Law> Pass for HessianPass<'_, L> {
             if matches!(self.curvature, Curvature::Clamped | Curvature::Material) {
                 L::clamp(&mut tangent);
             }
-            // The mixed strains belong to the membrane: a hinge uses its own stress.
+            // The mixed strains belong to the membrane; a hinge uses its own stress.
             if let (Curvature::Mixed(mixed), 0) = (self.curvature, part) {
                 let mixed = std::array::from_fn(|c| mixed[S * index + c]);
                 stress = self.law.stresses(&site, &mixed).stress;
@@ -245,13 +245,13 @@ fn scaled<const K: usize, const N: usize, const S: usize, L: Law>(
     })
 }
 
-/// How many of them an element has.
+/// Number of lower entries of an element.
 fn lower_entry_count(nodes: usize, coordinates: usize) -> usize {
     let unknowns = nodes * coordinates;
     unknowns * (unknowns + 1) / 2
 }
 
-/// The entries of an element's Hessian that are scattered, as (node, coordinate) pairs: the order of the targets.
+/// Scattered entries of an element's Hessian as (node, coordinate) pairs, in the order of the targets.
 pub(crate) fn lower_entries(nodes: usize, coordinates: usize) -> Vec<[(usize, usize); 2]> {
     let mut entries = Vec::new();
     for a in 0..nodes {
@@ -266,12 +266,12 @@ pub(crate) fn lower_entries(nodes: usize, coordinates: usize) -> Vec<[(usize, us
     entries
 }
 
-/// Derivative of the gradient with respect to a block of the law's parameters: one column of 3 × nodes a parameter.
+/// Derivative of the gradient with respect to a block of law parameters: one column of 3 × nodes entries per parameter.
 pub(crate) struct ParameterPass<'a, L: Law> {
     pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
     pub(crate) parameters: L::Parameters,
-    /// Room for one number a parameter.
+    /// Scratch space, one number per parameter.
     pub(crate) derivative: &'a mut [f64],
     pub(crate) columns: &'a mut [f64],
 }
@@ -306,7 +306,7 @@ impl<L: Law> Pass for ParameterPass<'_, L> {
     }
 }
 
-/// The membrane's strains to first order after a step: ε(x) + ∇ε(x)·Δx, `S` an element.
+/// First-order prediction of the membrane's strains after a step: ε(x) + ∇ε(x)·Δx, `S` per element.
 pub(crate) struct PredictedStrainPass<'a> {
     pub(crate) x: &'a [f64],
     pub(crate) step: &'a [f64],
@@ -334,7 +334,7 @@ impl Pass for PredictedStrainPass<'_> {
     }
 }
 
-/// All strains of one component, each with the area it stands for.
+/// Collects all strains of one component, each with the area it represents.
 pub(crate) struct StrainPass<'a> {
     pub(crate) x: &'a [f64],
     pub(crate) component: Component,

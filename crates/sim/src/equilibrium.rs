@@ -1,12 +1,13 @@
-//! Quasi-static equilibrium: the state in which the gradient of the total energy vanishes at every free node.
+//! Quasi-static equilibrium: the state where the gradient of the total energy vanishes at every free node.
 //!
-//! Newton's method with the geometric stiffness taken at the strains that the last step predicted ("mixed" Newton),
-//! which keeps stiff directions from filling the matrix with spurious stress after a rotation. The gradient is exact,
-//! so the equilibria are the same. Where the matrix is not positive definite, its geometric part is clamped element by
-//! element. Additive Levenberg–Marquardt, the published method, is a setting and the last resort. Where that comes to
-//! nothing, a softer or stiffer membrane shows the way. A balance that is not stable is left for the lower of the two states beside it.
+//! Newton's method with the geometric stiffness taken at the strains predicted by the last step ("mixed" Newton), which
+//! keeps spurious stress of stiff directions out of the matrix after a rotation. The gradient is exact, so the
+//! equilibria are unchanged. If the matrix is not positive definite, its geometric part is clamped element by element.
+//! Additive Levenberg–Marquardt, the published method, is available as a setting and serves as a fallback. If it fails
+//! too, a continuation starts from a softer or stiffer membrane. An unstable equilibrium is left for the lower of the
+//! two states beside it.
 //!
-//! Source: the problem, Miguel et al. 2012, §5.1; mixed Newton, after Magisano, Leonetti and Garcea 2017.
+//! Source: Miguel et al. 2012, §5.1 (problem); after Magisano, Leonetti and Garcea 2017 (mixed Newton).
 
 mod continuation;
 mod drive;
@@ -29,17 +30,17 @@ use crate::material::Curves;
 use newton::NONMONOTONE_STEPS;
 
 impl Solver<'_> {
-    /// Finds an equilibrium near a state, which it replaces.
+    /// Finds an equilibrium near the state `x`, which it replaces.
     ///
-    /// * `x` — 3 stacked coordinates a node, m; held nodes at their prescribed places, where they stay
+    /// * `x` — 3 stacked coordinates per node, m; held nodes at their prescribed positions, where they stay
     ///
-    /// On return [`Solver::solve_linear`] works with the true stiffness matrix there (where that is not positive
-    /// definite: shifted until it is); with Levenberg–Marquardt as the method, with that + μI, μ of the last step.
+    /// On return, [`Solver::solve_linear`] works with the true stiffness matrix at `x`, shifted if it is not positive
+    /// definite. With Levenberg–Marquardt as the method, it works with that matrix + μI, μ of the last step.
     ///
     /// # Panics
-    /// If `x` has another length than the cloth has coordinates.
+    /// If the length of `x` differs from the cloth's number of coordinates.
     pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
-        assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates a node");
+        assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates per node");
         if let Some(refused) = self.refused(x) {
             return refused;
         }
@@ -47,7 +48,7 @@ impl Solver<'_> {
         let start = x.to_vec();
         let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let mut found = self.settle(curves, x, settings);
-        // Fewer iterations than that were asked for to see how far they lead.
+        // Low iteration limits serve to see how far a solve gets: no continuation for these.
         if matches!(found.status, Status::IterationLimit | Status::Stalled)
             && settings.method == Method::MixedNewton
             && settings.max_iterations > NONMONOTONE_STEPS

@@ -1,20 +1,19 @@
-//! What can be wrong with a problem before any mathematics starts. A solve that fails is no error: see
-//! [`Status`](crate::equilibrium::Status).
+//! Input errors, detected before any solve. A failed solve is not an error: see [`Status`](crate::equilibrium::Status).
 
 use thiserror::Error;
 
-/// Misuse of the mechanics, or a mesh, curve or setting that no cloth can have.
+/// Misuse of the mechanics, or an impossible mesh, curve or setting.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Error {
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex}: {what} is not finite")]
     NotFinite {
-        /// Which coordinates.
+        /// The kind of coordinate.
         what: &'static str,
         /// Vertex index.
         vertex: usize,
     },
-    /// Two vertices at one rest position.
+    /// Two vertices have the same rest position.
     #[error("vertices {first} and {second} have the same rest position; merge them")]
     DuplicateVertex {
         /// The earlier vertex.
@@ -22,13 +21,13 @@ pub enum Error {
         /// The later vertex.
         second: usize,
     },
-    /// A vertex that belongs to no triangle.
+    /// A vertex belongs to no triangle.
     #[error("vertex {vertex} belongs to no triangle; remove it")]
     UnreferencedVertex {
         /// Vertex index.
         vertex: usize,
     },
-    /// A triangle that names a vertex which does not exist, or the same vertex twice.
+    /// A triangle refers to a vertex that does not exist, or twice to the same vertex.
     #[error("triangle {triangle}: vertex {vertex} of {vertices} does not exist or is named twice")]
     BadIndex {
         /// Triangle index.
@@ -38,13 +37,13 @@ pub enum Error {
         /// Number of vertices.
         vertices: usize,
     },
-    /// A triangle without area at rest.
+    /// A triangle has zero rest area.
     #[error("triangle {triangle}: its rest area is zero")]
     ZeroArea {
         /// Triangle index.
         triangle: usize,
     },
-    /// An edge that belongs to more than two triangles.
+    /// An edge belongs to more than two triangles.
     #[error("edge {}-{} belongs to three triangles ({}, {} and {}); cloth has at most two", edge[0], edge[1], triangles[0], triangles[1], triangles[2])]
     ThreeTriangles {
         /// The edge's vertices.
@@ -52,7 +51,7 @@ pub enum Error {
         /// Three of its triangles.
         triangles: [usize; 3],
     },
-    /// Two neighbours that are wound in opposite senses.
+    /// Two neighbouring triangles have opposite winding.
     #[error("triangles {} and {} are wound in opposite senses at edge {}-{}", triangles[0], triangles[1], edge[0], edge[1])]
     MixedWinding {
         /// The shared edge.
@@ -60,13 +59,13 @@ pub enum Error {
         /// The two triangles.
         triangles: [usize; 2],
     },
-    /// Material coordinates that mirror, or a triangle wound against them.
-    #[error("triangle {triangle}: its material coordinates are wound the other way (mirrored)")]
+    /// Material coordinates are mirrored, or a triangle is wound against them.
+    #[error("triangle {triangle}: its material coordinates are mirrored (opposite winding)")]
     MirroredMaterial {
         /// Triangle index.
         triangle: usize,
     },
-    /// Rest position and material coordinates disagree in an edge's length by more than 1 %.
+    /// Rest positions and material coordinates disagree in an edge's length by more than 1 %.
     #[error("edge {}-{}: {rest} m between rest positions, {material} m between material coordinates; they must agree within 1 %{}", edge[0], edge[1], unit_between(*rest, *material))]
     EdgeLength {
         /// The edge's vertices.
@@ -76,7 +75,7 @@ pub enum Error {
         /// Length between material coordinates, m.
         material: f64,
     },
-    /// A wing of a hinge has no height.
+    /// A hinge's wing has zero height.
     #[error("hinge at edge {}-{}: the triangle to vertex {wing} has collapsed", edge[0], edge[1])]
     CollapsedWing {
         /// The hinge's edge.
@@ -84,56 +83,56 @@ pub enum Error {
         /// The vertex opposite the edge.
         wing: usize,
     },
-    /// A model that needs the regular grid was given another mesh.
+    /// The model needs a regular grid, but the mesh is not one.
     #[error("{what} needs a regular grid without nodes inside its cells; this mesh is not one")]
     NeedsGrid {
-        /// What needs it.
+        /// The part of the model that needs the grid.
         what: &'static str,
     },
-    /// Parts of the cloth that nothing holds.
+    /// Nothing holds some parts of the cloth.
     #[error("nothing holds the part of the cloth that contains {}: {free} rigid motions free", listed(parts))]
     Unpinned {
-        /// Each of them, by its lowest vertex.
+        /// The parts, by lowest vertex.
         parts: Vec<Part>,
-        /// How many rigid motions remain to each.
+        /// Number of free rigid motions of each.
         free: usize,
     },
-    /// A value outside what it may be.
+    /// A value is out of range.
     #[error("{field}: found {value}, expected {expected}")]
     InvalidValue {
         /// The field.
         field: &'static str,
-        /// What was found.
+        /// The value found.
         value: f64,
-        /// What it may be.
+        /// The allowed range.
         expected: &'static str,
     },
-    /// A time step at which an explicit integrator is not stable.
+    /// A time step exceeds the stability limit of an explicit integrator.
     #[error(
         "step: found {step} s, expected at most {limit:.3e} s, beyond which Runge–Kutta is not stable here"
     )]
     UnstableStep {
-        /// The step asked for, s.
+        /// The requested step, s.
         step: f64,
-        /// The longest stable one, s.
+        /// The longest stable step, s.
         limit: f64,
     },
-    /// Two arrays that must have the same length have not.
+    /// Two arrays that must have the same length differ.
     #[error("{what}: {found} given, {expected} expected")]
     ShapeMismatch {
-        /// Which array.
+        /// Name of the array.
         what: &'static str,
         /// Expected length.
         expected: usize,
         /// Found length.
         found: usize,
     },
-    /// Control points that do not make a curve.
+    /// Control points do not form a valid curve.
     #[error("control point {point}: {reason}")]
     Curve {
         /// Index of the control point.
         point: usize,
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
 }
@@ -143,11 +142,11 @@ pub enum Error {
 pub struct Part {
     /// Its lowest vertex.
     pub vertex: usize,
-    /// How many vertices it has.
+    /// Number of vertices.
     pub vertices: usize,
 }
 
-/// The unit in which one of two lengths may be, if the other is in metres.
+/// Suggests a unit for one of two lengths if the other is in metres.
 fn unit_between(first: f64, second: f64) -> &'static str {
     match first.max(second) / first.min(second) {
         900.0..1100.0 => " (millimetres?)",

@@ -1,4 +1,4 @@
-//! Checks a derivative against finite differences. One helper for every model: adding a model adds one line of test.
+//! Checks a derivative against finite differences. Shared by all models: a new model adds one line of test.
 
 /// Largest difference between a derivative and its finite difference, relative to the largest entry of the derivative.
 ///
@@ -6,10 +6,10 @@
 /// f′(x) ≈ [8 (f(x+h) − f(x−h)) − (f(x+2h) − f(x−2h))]/(12 h) = f′(x) + O(h⁴)
 /// ```
 ///
-/// * `value` — n values at a point of m coordinates
+/// * `value` — n values at a point with m coordinates
 /// * `derivative` — n rows of m entries at `x`, row by row
 /// * `h` — step, in the units of x
-/// * `scale` — smallest size that a difference is compared with, in the units of the derivative
+/// * `scale` — smallest magnitude against which a difference is compared, in the units of the derivative
 pub fn derivative_error(
     value: impl Fn(&[f64]) -> Vec<f64>,
     derivative: &[f64],

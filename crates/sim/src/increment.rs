@@ -1,25 +1,25 @@
-//! What an implicit time step adds to the energy: a quadratic in the step's displacement.
+//! Terms that an implicit time step adds to the energy: a quadratic in the step's displacement.
 //!
 //! ```text
 //! Φ(x) = E(x) + ½ sᵀA s − b·s      s = x − x₀
 //! A = M/h² + C/h + B/h             b = M v₀/h + B w
 //! ```
 //!
-//! M are the masses, C the matrix of damping and B that of drag, both at x₀, and w the wind. Where Φ is least, its gradient
-//! vanishes, which is the equation of implicit Euler; so a time step is an equilibrium with more stiffness.
+//! M are the masses, C and B the damping and drag matrices at x₀, and w is the wind. The gradient vanishes at the
+//! minimum of Φ, which is the equation of implicit Euler; a time step is therefore an equilibrium with added stiffness.
 //!
-//! Source: the incremental potential, Kane, Marsden, Ortiz and West 2000.
+//! Source: incremental potential, Kane, Marsden, Ortiz and West 2000.
 
 use crate::cloth::{Cloth, ForceScale};
 
-/// The terms of one step, over the unknowns.
+/// Terms of one step, over the unknowns.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Increment {
-    /// x₀, 3 a node, m.
+    /// x₀, 3 per node, m.
     pub(crate) origin: Vec<f64>,
-    /// The part of A on the diagonal, N/m.
+    /// Diagonal part of A, N/m.
     pub(crate) diagonal: Vec<f64>,
-    /// The lower entries of the rest of A, N/m; empty if there is none.
+    /// Lower entries of the rest of A, N/m; empty if there is none.
     pub(crate) matrix: Vec<f64>,
     /// b, N.
     pub(crate) push: Vec<f64>,
@@ -28,7 +28,7 @@ pub(crate) struct Increment {
 }
 
 impl Increment {
-    /// Room for a cloth's unknowns.
+    /// Allocates for a cloth's unknowns.
     pub(crate) fn new(cloth: &Cloth) -> Self {
         let zeros = vec![0.0; cloth.unknowns()];
         Self {
@@ -41,7 +41,7 @@ impl Increment {
         }
     }
 
-    /// ½ sᵀA s − b·s, J; A s − b stays in `product`.
+    /// ½ sᵀA s − b·s, J; leaves A s − b in `product`.
     pub(crate) fn energy(&mut self, cloth: &Cloth, x: &[f64]) -> f64 {
         for (s, &coordinate) in self.displacement.iter_mut().zip(cloth.unknown_coordinates()) {
             *s = x[coordinate] - self.origin[coordinate];
@@ -60,7 +60,7 @@ impl Increment {
         energy
     }
 
-    /// Adds its gradient, and how large its forces and their rounding are; returns the energy, J.
+    /// Adds the gradient and the magnitudes of its forces and rounding errors; returns the energy, J.
     pub(crate) fn add_gradient(
         &mut self,
         cloth: &Cloth,
@@ -71,14 +71,14 @@ impl Increment {
         let energy = self.energy(cloth, x);
         for (unknown, &coordinate) in cloth.unknown_coordinates().iter().enumerate() {
             gradient[coordinate] += self.product[unknown];
-            // Through inertia an error of position becomes a force, too.
+            // Inertia also converts a position error to a force error.
             let stiffness = &mut scale.stiffness[coordinate / 3];
             *stiffness = stiffness.max(self.diagonal[unknown]);
         }
         energy
     }
 
-    /// vᵀ R v of the part R of A that is off the diagonal, W/s.
+    /// vᵀ R v for the off-diagonal part R of A, W/s.
     pub(crate) fn quadratic(&mut self, cloth: &Cloth, velocities: &[f64]) -> f64 {
         let free = cloth.unknown_coordinates();
         let v = &mut self.displacement;

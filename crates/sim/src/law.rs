@@ -1,4 +1,4 @@
-//! The law of an element: from its strains to energy density, stresses and tangent.
+//! The law of an element: strains to energy density, stresses and tangent.
 //!
 //! ```text
 //! W(ε)   energy density          ε all strains of one element
@@ -7,12 +7,13 @@
 //! ∂σ_c/∂pᵢ                       for each parameter pᵢ of a block, as a curve's control values
 //! ```
 //!
-//! The sums over elements ([`element`](crate::element)) know a law by this trait alone. [`Curves`] are the diagonal law, as
-//! published: every stress depends on its own strain, W = Σ_c W_c(ε_c). A law with history reads it at [`Site::element`].
+//! The sums over elements ([`element`](crate::element)) access a law only through this trait. [`Curves`] are the
+//! diagonal law, as published: every stress depends on its own strain only, W = Σ_c W_c(ε_c). A law with history reads
+//! it at [`Site::element`].
 
 use crate::material::{Component, Curves};
 
-/// Where a law is evaluated.
+/// Location at which a law is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Site<const S: usize> {
     /// 0 for the membrane, 1 for bending.
@@ -28,20 +29,20 @@ pub struct Site<const S: usize> {
 pub struct Stresses<const S: usize> {
     /// σ_c, N/m (bending: N).
     pub stress: [f64; S],
-    /// ∂σ_c/∂ε_d, in the units of stiffness; only the diagonal is set where the law is not coupled.
+    /// ∂σ_c/∂ε_d, in the units of stiffness; an uncoupled law sets only the diagonal.
     pub tangent: [[f64; S]; S],
 }
 
-/// Strains to energy density, stresses and tangent.
+/// Maps strains to energy density, stresses and tangent.
 pub trait Law {
-    /// Whether a stress depends on other strains than its own. The work for the off-diagonal of the tangent is left out
-    /// where it does not.
+    /// True if a stress depends on strains other than its own. Otherwise the off-diagonal work of the tangent is
+    /// skipped.
     const COUPLED: bool;
 
-    /// Names a block of parameters that a fit finds together.
+    /// Identifies a block of parameters that a fit determines together.
     type Parameters: Copy;
 
-    /// False where a component stores no energy.
+    /// False if a component stores no energy.
     fn has(&self, component: Component) -> bool;
 
     /// Energy density, J/m².
@@ -50,7 +51,7 @@ pub trait Law {
     /// Stresses and tangent.
     fn stresses<const S: usize>(&self, site: &Site<S>, strains: &[f64; S]) -> Stresses<S>;
 
-    /// Replaces a tangent by a positive semi-definite one near it.
+    /// Replaces a tangent by a nearby positive semi-definite one.
     fn clamp<const S: usize>(tangent: &mut [[f64; S]; S]);
 
     /// True if σ_c depends on a block of parameters.
@@ -96,7 +97,7 @@ impl Law for Curves {
         stresses
     }
 
-    /// A curve that softens has a negative tangent.
+    /// A softening curve has a negative tangent.
     #[inline(always)]
     fn clamp<const S: usize>(tangent: &mut [[f64; S]; S]) {
         (0..S).for_each(|c| tangent[c][c] = tangent[c][c].max(0.0));

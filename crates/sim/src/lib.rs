@@ -1,9 +1,9 @@
-//! Cloth mechanics: which shape a sheet of cloth takes, and which forces its clips feel.
+//! Cloth mechanics: the shape of a sheet of cloth and the forces on its clips.
 //!
 //! # The problem
 //!
-//! A sheet is a triangle mesh; its state x stacks three coordinates of every node. Every element (a triangle, spring or
-//! hinge) measures strains ε_c of up to three of six components, and every component has its curve:
+//! A sheet is a triangle mesh; its state x stacks three coordinates of every node. Every element (triangle, spring or
+//! hinge) measures up to three strains ε_c. There are six components, each with its own curve:
 //!
 //! ```text
 //! energy        E(x) = Σₑ Aₑ Σ_c W_c(ε_c) − Σₐ mₐ g·xₐ        W_c(ε) = ∫₀^ε σ_c,   σ_c(ε) = k_c(ε) ε
@@ -13,36 +13,35 @@
 //! motion        M ẍ = −∂E/∂x − C ẋ + drag of the air
 //! ```
 //!
-//! k_c is a Hermite spline through control points, the stiffnesses that a fit finds; energy, stress and forces are linear
-//! in them.
+//! k_c is a Hermite spline through control points, whose stiffnesses a fit determines; energy, stress and forces are
+//! linear in them.
 //!
-//! An equilibrium that is balanced but not stable is left for a lower one beside it, and flagged
-//! ([`Equilibrium::escaped`](equilibrium::Equilibrium::escaped)): near there another shape is as good. Where clips have moved
-//! far, [`Solver::drive`](equilibrium::Solver::drive) takes the sheet along in as many load steps as that needs. Nodes may be
-//! tied ([`Problem::tied`](cloth::Problem::tied)): they then share their unknowns, as the lines of a sheet do that bends as a
-//! cylinder. Or guided ([`Problem::guided`](cloth::Problem::guided)): they keep to a plane or a line.
+//! An unstable equilibrium is left for a lower one beside it, and flagged
+//! ([`Equilibrium::escaped`](equilibrium::Equilibrium::escaped)): another shape nearby is equally valid. If clips move
+//! far, [`Solver::drive`](equilibrium::Solver::drive) moves the sheet in as many load steps as needed. Tied nodes
+//! ([`Problem::tied`](cloth::Problem::tied)) share their unknowns, like the lines of a sheet that bends as a cylinder.
+//! Guided nodes ([`Problem::guided`](cloth::Problem::guided)) move in a plane or on a line.
 //!
 //! | Type | Role |
 //! |---|---|
-//! | [`mesh::Grid`], [`mesh::Mesh`] | the sheet at rest, checked |
-//! | [`curve::StiffnessCurve`], [`material::Curves`] | stiffness against strain, one a component |
+//! | [`mesh::Grid`], [`mesh::Mesh`] | the sheet at rest, validated |
+//! | [`curve::StiffnessCurve`], [`material::Curves`] | stiffness against strain, one curve per component |
 //! | [`element::Element`] | strains of one element and their derivatives |
 //! | [`strain_measure::StrainMeasure`] | a model's strain of a component, and its physical measure |
-//! | [`law::Law`] | from the strains of one element to energy, stresses and tangent |
+//! | [`law::Law`] | strains of one element to energy, stresses and tangent |
 //! | [`membrane::Membrane`], [`bending::Bending`] | the elements of a mesh |
-//! | [`load::Held`] | nodes that clips or tables hold |
-//! | [`cloth::Problem`] → [`cloth::Cloth`] | all of it made ready: energy, gradient, sparse Hessian |
-//! | [`equilibrium::Solver`] → [`equilibrium::Equilibrium`] | the balanced state, its clip forces, and how the solve ended |
-//! | [`dynamics::Motion`] | the cloth on its way: implicit or explicit time steps, damping, wind, energies |
-//! | [`descent`] | from any shape down to one at rest |
+//! | [`load::Held`] | nodes held by clips or tables |
+//! | [`cloth::Problem`] → [`cloth::Cloth`] | the assembled problem: energy, gradient, sparse Hessian |
+//! | [`equilibrium::Solver`] → [`equilibrium::Equilibrium`] | the equilibrium, its clip forces and the status |
+//! | [`dynamics::Motion`] | cloth in motion: implicit or explicit time steps, damping, wind, energies |
+//! | [`descent`] | from any shape down to a shape at rest |
 //! | [`samples::Sample`] | small problems with known answers |
 //!
-//! Units are SI. A mistake in the input is an [`error::Error`]; a solve that fails is a
-//! [`Status`](equilibrium::Status).
+//! Units are SI. Invalid input is an [`error::Error`]; a failed solve is a [`Status`](equilibrium::Status).
 //!
 //! # Example
 //!
-//! A strip 40 mm wide is pulled by 5 %:
+//! A strip 40 mm wide is stretched by 5 %:
 //!
 //! ```
 //! use cloth_sim::equilibrium::{Settings, Solver};
@@ -58,14 +57,14 @@
 //! let found = solver.solve(&sample.curves, &mut x, &Settings::default());
 //! assert!(found.converged());
 //!
-//! // Nominal stress λ k (λ² − 1)/2 of 5.38125 N/m, over the width.
+//! Nominal stress λ k (λ² − 1)/2 = 5.38125 N/m, times the width.
 //! let force = solver.clip_forces()[1].x;
 //! assert!((force - 0.04 * 5.38125).abs() < 1e-12);
 //! # Ok(())
 //! # }
 //! ```
 
-/// The linear algebra that vectors and states come in.
+/// Linear algebra for vectors and states.
 pub use nalgebra;
 
 pub mod bending;
@@ -90,7 +89,7 @@ pub mod samples;
 mod sequence;
 pub mod strain_measure;
 
-/// The example there is run, too.
+/// Runs the README's example, too.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

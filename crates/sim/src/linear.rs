@@ -1,7 +1,7 @@
-//! Sparse symmetric systems: ordering, factorisation or conjugate gradients. Only this folder names faer.
+//! Sparse symmetric systems: ordering, factorisation, conjugate gradients. All use of faer is inside this module.
 //!
-//! The symbolic factorisation is made once for a pattern, the numeric one at every step, into memory that is kept.
-//! Everything runs on the calling thread: cloth this small gains from many frames at once, not from a parallel factor.
+//! The symbolic factorisation is computed once per pattern, the numeric one in every step, in reused memory. Everything
+//! runs on the calling thread: at this size, solving many frames at once pays more than a parallel factorisation.
 
 pub(crate) mod cholesky;
 pub(crate) mod conjugate_gradient;
@@ -13,7 +13,7 @@ use cholesky::Factor;
 use conjugate_gradient::ConjugateGradient;
 use matrix::{NotPositiveDefinite, Pattern};
 
-/// How linear systems are solved.
+/// Solver of linear systems.
 pub(crate) enum Linear {
     /// By factorisation.
     Direct(Factor),
@@ -22,7 +22,7 @@ pub(crate) enum Linear {
 }
 
 impl Linear {
-    /// Makes the matrix with these lower entries ready.
+    /// Prepares the matrix with these lower entries.
     pub(crate) fn prepare(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
         match self {
             Self::Direct(factor) => factor.factorise(pattern, lower),
@@ -30,7 +30,7 @@ impl Linear {
         }
     }
 
-    /// Solves in place for as many right-hand sides as are stacked in `columns`.
+    /// Solves in place for all right-hand sides stacked in `columns`.
     pub(crate) fn solve(
         &mut self,
         pattern: &Pattern,
@@ -47,8 +47,8 @@ impl Linear {
         }
     }
 
-    /// The direction, of length 1, in which K is softest, and the stiffness there, by inverse iteration with
-    /// K + μI, which is prepared. It ends when a negative stiffness is settled to 1 %.
+    /// Finds the unit direction in which K is softest, and returns the stiffness there, by inverse iteration with K +
+    /// μI, which must be prepared. Stops when a negative stiffness has settled to 1 %.
     pub(crate) fn softest(&mut self, pattern: &Pattern, shift: f64, direction: &mut [f64]) -> f64 {
         direction.iter_mut().enumerate().for_each(|(index, d)| *d = irregular(index));
         normalise(direction);
@@ -69,7 +69,7 @@ impl Linear {
         stiffness
     }
 
-    /// How many factorisations were made.
+    /// Number of factorisations.
     pub(crate) fn factorisations(&self) -> usize {
         match self {
             Self::Direct(factor) => factor.count,
@@ -77,7 +77,7 @@ impl Linear {
         }
     }
 
-    /// How many iterations of conjugate gradients were made.
+    /// Number of conjugate gradient iterations.
     pub(crate) fn iterations(&self) -> usize {
         match self {
             Self::Direct(_) => 0,
@@ -86,11 +86,11 @@ impl Linear {
     }
 }
 
-/// With a shift up to ten times the most negative stiffness, so many leave 3e-5 of what has no stiffness at all. A solve
-/// is cheap beside a factorisation.
+/// With a shift up to ten times the most negative stiffness, this many iterations leave 3e-5 of a component with zero
+/// stiffness. A solve is cheap compared with a factorisation.
 const INVERSE_ITERATIONS: usize = 100;
 
-/// Divides by the length, and returns it.
+/// Normalises a vector and returns its length.
 fn normalise(vector: &mut [f64]) -> f64 {
     let length = vector.iter().map(|v| v * v).sum::<f64>().sqrt();
     vector.iter_mut().for_each(|v| *v /= length);

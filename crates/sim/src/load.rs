@@ -1,31 +1,31 @@
-//! What acts on the cloth from outside: its weight, and the clips and tables that hold it.
+//! External loads and supports: weight, clips and tables.
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use nalgebra::{Matrix3, Vector3};
 
-/// A node that is held at a prescribed place.
+/// A node held at a prescribed position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Held {
     /// Node index.
     pub node: usize,
-    /// The clip that holds it, whose force is wanted; `None` for a table or a nail.
+    /// The clip that holds the node and whose force is computed; `None` for a table or a nail.
     pub clip: Option<usize>,
 }
 
-/// A node that may move in some directions only, as along a rail.
+/// A node that may move in some directions only, for example along a rail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guided {
     /// Node index.
     pub node: usize,
-    /// Where it may go.
+    /// Its free directions.
     pub free: Free,
 }
 
-/// The directions in which a guided node may move; vectors of any length but zero.
+/// Free directions of a guided node; vectors of any nonzero length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Free {
-    /// Two: across this normal.
+    /// Two: the plane across this normal.
     Plane(Vector3<f64>),
     /// One: along this line.
     Line(Vector3<f64>),
@@ -43,7 +43,7 @@ impl Free {
     pub fn projection(self) -> Result<Matrix3<f64>> {
         let unit = |direction: Vector3<f64>| {
             let length = direction.norm();
-            // Written so that a NaN is caught too.
+            // Negated to catch NaN.
             if !(length > 0.0 && length.is_finite()) {
                 let expected = "a direction of finite length above zero";
                 return Err(Error::InvalidValue { field: "guided", value: length, expected });
@@ -64,7 +64,7 @@ impl Free {
     }
 }
 
-/// Lumped masses, kg: a third of every triangle's mass to each of its vertices.
+/// Lumped masses, kg: a third of every triangle's mass on each of its vertices.
 ///
 /// * `areal_density` — kg/m²
 ///

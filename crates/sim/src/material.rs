@@ -1,10 +1,10 @@
-//! Which model, which curves: all that a simulator must know of a fabric, and nothing of any mesh.
+//! Model and curves: the complete description of a fabric, independent of any mesh.
 
 use crate::curve::{NegativeStrain, StiffnessCurve};
 use crate::strain_measure::StrainMeasure;
 use serde::{Deserialize, Serialize};
 
-/// A complete cloth model: a membrane and the bending that goes with it (Miguel et al. 2012, §6).
+/// A complete cloth model: a membrane and its bending (Miguel et al. 2012, §6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
@@ -12,7 +12,7 @@ pub enum Model {
     Stvk,
     /// Soft constraints of Baraff and Witkin, discrete shells.
     SoftConstraint,
-    /// Springs in the sheet and ring-2 springs against bending.
+    /// In-plane springs, and ring-2 springs for bending.
     Springs,
 }
 
@@ -20,7 +20,8 @@ impl Model {
     /// All models.
     pub const ALL: [Self; 3] = [Self::Stvk, Self::SoftConstraint, Self::Springs];
 
-    /// True if its elements are springs, which need a regular grid; else they are triangles and hinges, of any mesh.
+    /// True if the elements are springs, which need a regular grid; otherwise they are triangles and hinges, for any
+    /// mesh.
     pub fn is_of_springs(self) -> bool {
         match self {
             Self::Springs => true,
@@ -41,7 +42,7 @@ impl Model {
         }
     }
 
-    /// How a component's curve is read at negative strain.
+    /// Rule for a component's curve at negative strain.
     pub fn negative_strain(self, component: Component, compression: Compression) -> NegativeStrain {
         match (component.is_stretch(), compression) {
             (false, _) => NegativeStrain::Odd,
@@ -62,7 +63,7 @@ impl Model {
         }
     }
 
-    /// Membrane and bending in a few words.
+    /// Short description of membrane and bending.
     pub fn description(self) -> &'static str {
         match self {
             Self::Stvk => "Diagonalised StVK, discrete shells",
@@ -78,14 +79,14 @@ impl std::fmt::Display for Model {
     }
 }
 
-/// What weft and warp do under compression.
+/// Behaviour of weft and warp under compression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Compression {
-    /// Push back with the stiffness at zero strain.
+    /// Resists with the stiffness at zero strain.
     #[default]
     ZeroStrain,
-    /// Bear tension only.
+    /// Tension only.
     None,
 }
 
@@ -103,12 +104,12 @@ pub enum Component {
     BendWeft,
     /// Bending along warp.
     BendWarp,
-    /// Bending along neither.
+    /// Bending along neither yarn.
     BendDiagonal,
 }
 
 impl Component {
-    /// All components, in the order in which they index [`Curves`].
+    /// All components, in the order of their index in [`Curves`].
     pub const ALL: [Self; 6] = [
         Self::StretchWeft,
         Self::StretchWarp,
@@ -118,12 +119,12 @@ impl Component {
         Self::BendDiagonal,
     ];
 
-    /// Weft or warp stretch.
+    /// True for weft or warp stretch.
     pub fn is_stretch(self) -> bool {
         matches!(self, Self::StretchWeft | Self::StretchWarp)
     }
 
-    /// One of the three bending components.
+    /// True for the three bending components.
     pub fn is_bending(self) -> bool {
         matches!(self, Self::BendWeft | Self::BendWarp | Self::BendDiagonal)
     }
@@ -142,7 +143,7 @@ impl std::fmt::Display for Component {
     }
 }
 
-/// Up to six curves, one a component. A component without a curve stores no energy.
+/// Up to six curves, one per component. A component without a curve stores no energy.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Curves([Option<StiffnessCurve>; 6]);
 

@@ -1,4 +1,4 @@
-//! In-plane energy: three strain measures for the same curves.
+//! In-plane energy: three strain measures that share the same curves.
 
 mod soft_constraint;
 mod spring;
@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::material::{Component, Model};
 use crate::mesh::Mesh;
 
-/// The membrane's elements.
+/// Membrane elements.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Membrane {
     /// Ring-1 springs.
@@ -28,10 +28,10 @@ pub enum Membrane {
 }
 
 impl Membrane {
-    /// The elements that the given components need on a mesh: a spring model without shear has no diagonals.
+    /// Elements for the given components on a mesh; a spring model without shear gets no diagonals.
     ///
     /// # Errors
-    /// Springs on a mesh that is no regular grid.
+    /// Springs on a mesh that is not a regular grid.
     pub fn new(model: Model, mesh: &Mesh, components: &[Component]) -> Result<Self> {
         let triangles = || (0..mesh.triangles.len()).map(|triangle| Triangle::new(mesh, triangle));
         Ok(match model {
@@ -41,7 +41,7 @@ impl Membrane {
         })
     }
 
-    /// A pass over the elements, in the plane or in space.
+    /// Runs a pass over the elements, in the plane or in space.
     pub(crate) fn visit(&self, planar: bool, pass: &mut impl Pass) {
         match (self, planar) {
             (Self::Springs(elements), true) => pass.visit::<2, 2, 1, _>(0, elements),

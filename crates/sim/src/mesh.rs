@@ -1,31 +1,31 @@
-//! Triangle meshes: vertices at rest, their material coordinates, triangles, and the edges between them.
+//! Triangle meshes: rest positions, material coordinates, triangles, and the edges between them.
 //!
-//! A mesh says where the cloth is and how it is connected; what that costs in energy is for
-//! [`membrane`](crate::membrane) and [`bending`](crate::bending).
+//! A mesh is geometry and connectivity only; the energy is defined in [`membrane`](crate::membrane) and
+//! [`bending`](crate::bending).
 
 use crate::error::{Error, Result};
 use nalgebra::{Vector2, Vector3};
 use std::collections::{BTreeMap, HashMap};
 
-/// How the cells of a grid are split into triangles.
+/// Split of a grid's cells into triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Diagonals {
-    /// Every cell by '/': from its low corner to its high one.
+    /// '/' in every cell, from its low corner to its high one.
     Forward,
-    /// Every cell by '\'.
+    /// '\' in every cell.
     Backward,
-    /// '/' and '\' in turn, as on a chessboard.
+    /// '/' and '\' alternating, as on a chessboard.
     Alternating,
-    /// Every cell by both, around a node at its centre.
+    /// Both in every cell, with a node at its centre.
     ///
-    /// For strips cut on the bias: yarns that hardly stretch lock triangles without an edge along each yarn, and these
-    /// have one along both. Source: Hamila and Boisse 2013; Yu et al. 2006.
+    /// For strips cut on the bias: nearly inextensible yarns lock triangles that lack an edge along each yarn, and
+    /// these have one along both. Source: Hamila and Boisse 2013; Yu et al. 2006.
     Crossed,
 }
 
-/// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`. Crossed cells have
-/// their centres after all of these, row by row.
+/// A regular grid of nodes over a rectangle; node `(column, row)` has index `row · columns + column`. The centres of
+/// crossed cells follow, row by row.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
     /// Nodes along x, at least 2.
@@ -36,7 +36,7 @@ pub struct Grid {
     pub width: f64,
     /// Extent along y, m.
     pub height: f64,
-    /// How cells are split.
+    /// Split of the cells.
     pub diagonals: Diagonals,
 }
 
@@ -51,7 +51,7 @@ impl Grid {
         [self.width / (self.columns - 1) as f64, self.height / (self.rows - 1) as f64]
     }
 
-    /// True if a cell is split by '/'; false by '\', or by both.
+    /// True if a cell is split by '/'; false for '\' or both.
     fn is_forward(&self, column: usize, row: usize) -> bool {
         match self.diagonals {
             Diagonals::Forward => true,
@@ -60,10 +60,10 @@ impl Grid {
         }
     }
 
-    /// The grid as a flat mesh in the plane z = 0; material coordinates equal x and y.
+    /// Builds the grid as a flat mesh in the plane z = 0; material coordinates equal x and y.
     ///
     /// # Errors
-    /// Fewer than two nodes a side, or a side that is not positive.
+    /// Fewer than two nodes per side, or a side that is not positive.
     pub fn mesh(&self) -> Result<Mesh> {
         let count = |value, field| match value {
             0 | 1 => Err(Error::InvalidValue { field, value: value as f64, expected: "at least 2 nodes" }),
@@ -85,7 +85,7 @@ impl Grid {
         Ok(mesh)
     }
 
-    /// Where the nodes are, m.
+    /// Positions of the nodes, m.
     fn nodes(&self) -> Vec<Vector2<f64>> {
         let [dx, dy] = self.cell();
         let places = |columns: usize, rows: usize, offset: f64| {
@@ -99,7 +99,7 @@ impl Grid {
         places(self.columns, self.rows, 0.0).chain(places(self.columns - 1, centres, 0.5)).collect()
     }
 
-    /// The triangles of a cell.
+    /// Triangles of a cell.
     fn triangles(&self, [column, row]: [usize; 2]) -> Vec<[usize; 3]> {
         let [low, right] = [self.node(column, row), self.node(column + 1, row)];
         let [up, high] = [self.node(column, row + 1), self.node(column + 1, row + 1)];
@@ -114,7 +114,7 @@ impl Grid {
     }
 }
 
-/// An edge with the vertices opposite it: one at the border, two inside.
+/// An edge and the vertices opposite it: one at the border, two inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
     /// End vertices, in the winding of the first triangle.
@@ -125,25 +125,26 @@ pub struct Edge {
     pub right: Option<usize>,
 }
 
-/// A checked triangle mesh at rest.
+/// A validated triangle mesh at rest.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Mesh {
     /// Rest positions, m.
     pub positions: Vec<Vector3<f64>>,
-    /// Material coordinates, m: x along weft, y along warp. One pair a vertex.
+    /// Material coordinates, m: x along weft, y along warp. One pair per vertex.
     pub material: Vec<Vector2<f64>>,
-    /// Vertex indices of each triangle, all wound alike.
+    /// Vertex indices of each triangle, with consistent winding.
     pub triangles: Vec<[usize; 3]>,
-    /// The grid that the mesh was made from, if it was.
+    /// The grid from which the mesh was made, if any.
     pub grid: Option<Grid>,
 }
 
 impl Mesh {
-    /// Checks a mesh and takes it.
+    /// Validates a mesh.
     ///
     /// # Errors
-    /// Non-finite, duplicate or unreferenced vertices; bad indices; triangles without area; an edge with three
-    /// triangles; mixed winding; material coordinates that mirror or disagree with the rest lengths by more than 1 %.
+    /// Non-finite, duplicate or unreferenced vertices; invalid indices; triangles with zero area; an edge with three
+    /// triangles; mixed winding; material coordinates that are mirrored or disagree with the rest lengths by more than
+    /// 1 %.
     pub fn new(
         positions: Vec<Vector3<f64>>,
         material: Vec<Vector2<f64>>,
@@ -168,12 +169,12 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// True if the mesh has no vertex.
+    /// True if the mesh has no vertices.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// Where the vertices are at rest, 3 stacked coordinates each, m: the state that a solve starts from.
+    /// Rest positions of the vertices, 3 stacked coordinates each, m: a state from which a solve can start.
     pub fn coordinates(&self) -> Vec<f64> {
         self.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
     }
@@ -184,10 +185,10 @@ impl Mesh {
         (b - a).perp(&(c - a))
     }
 
-    /// All edges, ordered by their vertices.
+    /// All edges, sorted by their vertices.
     ///
     /// # Errors
-    /// An edge with three triangles, or neighbours wound in opposite senses.
+    /// An edge with three triangles, or neighbours with opposite winding.
     pub fn edges(&self) -> Result<Vec<Edge>> {
         let mut found: BTreeMap<[usize; 2], (Edge, Vec<usize>)> = BTreeMap::new();
         for (index, &[a, b, c]) in self.triangles.iter().enumerate() {
@@ -210,7 +211,7 @@ impl Mesh {
         Ok(found.into_values().map(|(edge, _)| edge).collect())
     }
 
-    /// The connected part that each vertex belongs to, named by the part's lowest vertex.
+    /// Connected part of each vertex, identified by the part's lowest vertex.
     pub fn parts(&self) -> Vec<usize> {
         let mut part: Vec<usize> = (0..self.len()).collect();
         fn root(part: &mut [usize], mut vertex: usize) -> usize {
@@ -240,7 +241,7 @@ impl Mesh {
                     return Err(Error::NotFinite { what, vertex });
                 }
             }
-            // Adding zero makes -0 and 0 the same key.
+            // Adding zero gives -0 and 0 the same key.
             let key = [position.x, position.y, position.z].map(|c| (c + 0.0).to_bits());
             if let Some(first) = seen.insert(key, vertex) {
                 return Err(Error::DuplicateVertex { first, second: vertex });
@@ -264,7 +265,7 @@ impl Mesh {
             }
             let [p, q, r] = [a, b, c].map(|vertex| self.positions[vertex]);
             let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
-            // Written so that a NaN is caught too.
+            // Negated to catch NaN.
             if !((q - p).cross(&(r - p)).norm() > 1e-10 * longest) {
                 return Err(Error::ZeroArea { triangle });
             }
@@ -279,7 +280,7 @@ impl Mesh {
         for Edge { ends: [from, to], .. } in self.edges()? {
             let rest = (self.positions[to] - self.positions[from]).norm();
             let material = (self.material[to] - self.material[from]).norm();
-            // Written so that a NaN, of lengths beyond all numbers, is caught too.
+            // Negated to catch NaN from overflowing lengths.
             if !((material - rest).abs() <= 0.01 * rest) {
                 return Err(Error::EdgeLength { edge: [from, to], rest, material });
             }
@@ -334,7 +335,7 @@ mod tests {
         // Grid nodes first, then the centres row by row.
         assert_eq!(mesh.material[grid.node(3, 1)], Vector2::new(3.0, 0.5));
         assert_eq!(mesh.material[4 * 3 + 4], Vector2::new(1.5, 0.75));
-        // Every triangle is a quarter of a cell, wound like the others.
+        // Every triangle is a quarter of a cell, with the same winding.
         assert!((0..24).all(|triangle| (mesh.double_area(triangle) - 0.25).abs() < 1e-15));
         assert!(mesh.parts().iter().all(|&part| part == 0));
         let name = IntoDeserializer::<serde::de::value::Error>::into_deserializer("crossed");

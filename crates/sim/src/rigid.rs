@@ -1,14 +1,14 @@
-//! The rigid motion that takes points nearest to others.
+//! Least-squares rigid motion between point pairs.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-/// What stands for the size of points that lie on a line, or on one spot, as a share of theirs.
+/// Regularisation for points on a line or at one spot, as a share of their size.
 const DEGENERATE: f64 = 1e-6;
 
-/// The rotation that takes the first of each pair nearest to the second; where several do, the one that turns least.
-/// The identity where there is no pair, or none but zeros, or one that is not finite.
+/// Rotation that best maps the first of each pair to the second; the smallest one if it is not unique. The identity
+/// without pairs, if all are zero, or if one is not finite.
 ///
-/// Source: Kabsch 1976, by the singular value decomposition.
+/// Source: Kabsch 1976, by singular value decomposition.
 pub fn nearest_rotation(pairs: impl Iterator<Item = [Vector3<f64>; 2]>) -> UnitQuaternion<f64> {
     let (mut moment, mut size) = (Matrix3::zeros(), 0.0);
     for [before, after] in pairs {
@@ -16,24 +16,24 @@ pub fn nearest_rotation(pairs: impl Iterator<Item = [Vector3<f64>; 2]>) -> UnitQ
         size += before.norm_squared() + after.norm_squared();
     }
     let mut rotation = Matrix3::identity();
-    // Written so that a NaN does not turn either.
+    // Negated so that a NaN gives the identity, too.
     if !(size > 0.0 && size.is_finite()) {
         return UnitQuaternion::identity();
     }
-    // Points on a line have no angle about it: the rotation so far decides, at first none. Where they have one, each round
-    // takes away all but a millionth of what that does to it.
+    // Points on a line do not determine the angle about it: the current rotation does, starting from the identity. If
+    // the points do determine it, each round reduces the effect of the regularisation to a millionth.
     for _ in 0..3 {
         let svd = (moment + rotation * (DEGENERATE * size)).svd(true, true);
         let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return UnitQuaternion::identity() };
         let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, (u * v).determinant().signum()));
         rotation = u * mirror * v;
     }
-    // A quaternion knows the axis of half a turn, too.
+    // A quaternion also represents the axis of a half turn.
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation))
 }
 
-/// The rigid motion that takes the first of each pair nearest to the second, with the [`nearest_rotation`] about their
-/// middle. The identity where there is no pair, or one that is not finite.
+/// Rigid motion that best maps the first of each pair to the second: the [`nearest_rotation`] about the centroid. The
+/// identity without pairs, or if one is not finite.
 pub fn nearest_motion(pairs: &[[Vector3<f64>; 2]]) -> Isometry3<f64> {
     let middle = |side: usize| pairs.iter().map(|pair| pair[side]).sum::<Vector3<f64>>() / pairs.len() as f64;
     let [before, after] = [middle(0), middle(1)];

@@ -1,12 +1,12 @@
-//! Small problems with known answers: for tests, examples and benchmarks.
+//! Small problems with known answers, for tests, examples and benchmarks.
 //!
-//! | Sample | Known |
+//! | Sample | Known answer |
 //! |---|---|
-//! | [`strip`] | the clips' force |
-//! | [`patch`] | every position: the affine map itself |
-//! | [`hanging_sheet`] | the clip's force: the weight |
-//! | [`cantilever`] | the weight; small deflections, by beam theory |
-//! | [`picture_frame`] | nothing in closed form: it buckles |
+//! | [`strip`] | the clip force |
+//! | [`patch`] | every position: the affine map |
+//! | [`hanging_sheet`] | the clip force: the weight |
+//! | [`cantilever`] | the weight; small deflections from beam theory |
+//! | [`picture_frame`] | no closed form: it buckles |
 
 use crate::cloth::{Cloth, Problem};
 use crate::curve::StiffnessCurve;
@@ -20,37 +20,37 @@ use nalgebra::{Matrix3x2, Vector2, Vector3};
 /// Side of the square samples, m.
 pub const SIDE: f64 = 0.1;
 
-/// Mass of the samples, kg/m².
+/// Areal density of the samples, kg/m².
 pub const AREAL_DENSITY: f64 = 0.2;
 
 /// Standard gravity, m/s².
 pub const GRAVITY: f64 = 9.80665;
 
-/// A problem with the state that a solve starts from.
+/// A problem and the state from which a solve starts.
 #[derive(Debug, Clone)]
 pub struct Sample {
     /// The sheet at rest.
     pub mesh: Mesh,
-    /// Which membrane and bending.
+    /// Membrane and bending model.
     pub model: Model,
-    /// The curves; their components are the problem's.
+    /// Curves; their components are those of the problem.
     pub curves: Curves,
-    /// kg/m².
+    /// Areal density, kg/m².
     pub areal_density: f64,
-    /// m/s².
+    /// Gravity, m/s².
     pub gravity: Vector3<f64>,
-    /// Nodes at prescribed places.
+    /// Nodes at prescribed positions.
     pub held: Vec<Held>,
     /// Nodes that may move in some directions only.
     pub guided: Vec<Guided>,
-    /// All motion is in planes z = const.
+    /// Planar motion, z = const.
     pub planar: bool,
-    /// 3 stacked coordinates a node, m; held nodes at their places.
+    /// 3 stacked coordinates per node, m; held nodes at their positions.
     pub start: Vec<f64>,
 }
 
 impl Sample {
-    /// A sheet at rest, held nowhere, without weight, in space.
+    /// A weightless, free sheet at rest in space.
     pub fn at_rest(mesh: Mesh, model: Model, curves: Curves) -> Self {
         let start = mesh.coordinates();
         Self {
@@ -68,8 +68,8 @@ impl Sample {
 
     /// The problem.
     ///
-    /// * `components` — those that store energy: mostly all that have a curve
-    /// * `tied` — groups of nodes that move alike
+    /// * `components` — components that store energy, usually all that have a curve
+    /// * `tied` — groups of nodes that share one displacement
     pub fn problem<'a>(&'a self, components: &'a [Component], tied: &'a [Vec<usize>]) -> Problem<'a> {
         Problem {
             mesh: &self.mesh,
@@ -84,16 +84,16 @@ impl Sample {
         }
     }
 
-    /// The problem of all that have a curve, made ready.
+    /// Prepares the problem with all components that have a curve.
     ///
     /// # Errors
-    /// As [`Cloth::new`].
+    /// Those of [`Cloth::new`].
     pub fn cloth(&self) -> Result<Cloth> {
         let components: Vec<Component> = self.curves.components().collect();
         Cloth::new(&self.problem(&components, &[]))
     }
 
-    /// Holds every node for which `clip` names one.
+    /// Holds every node to which `clip` assigns a clip.
     pub fn hold(&mut self, clip: impl Fn(Vector2<f64>) -> Option<usize>) {
         let rest = &self.mesh.positions;
         self.held = (0..rest.len())
@@ -101,14 +101,14 @@ impl Sample {
             .collect();
     }
 
-    /// Moves every node of the start.
+    /// Moves every node of the start by a map.
     pub fn place(&mut self, to: impl Fn(Vector3<f64>) -> Vector3<f64>) {
         for node in self.start.chunks_exact_mut(3) {
             node.copy_from_slice(to(Vector3::from_column_slice(node)).as_slice());
         }
     }
 
-    /// Moves every free node of the start by an irregular vector of up to `size`, m; in its plane if that is all it may.
+    /// Moves every free node of the start by an irregular vector of up to `size`, m; in the plane for planar problems.
     pub fn perturb(&mut self, size: f64) {
         let held: Vec<usize> = self.held.iter().map(|held| held.node).collect();
         for (node, x) in self.start.chunks_exact_mut(3).enumerate().filter(|(node, _)| !held.contains(node)) {
@@ -160,27 +160,27 @@ pub fn fabric(model: Model, [stretch, shear, bend]: [f64; 3]) -> Result<Curves> 
 /// A square grid of `nodes` × `nodes`.
 ///
 /// # Errors
-/// Fewer than two nodes a side.
+/// Fewer than two nodes per side.
 pub fn square(nodes: usize, diagonals: Diagonals) -> Result<Mesh> {
     Grid { columns: nodes, rows: nodes, width: SIDE, height: SIDE, diagonals }.mesh()
 }
 
-/// The same sheet cut at an angle (rad) to the weft.
+/// The same sheet cut at an angle (rad) to weft.
 pub fn cut_on_the_bias(mut mesh: Mesh, angle: f64) -> Mesh {
     let rotation = nalgebra::Rotation2::new(angle);
     mesh.material.iter_mut().for_each(|m| *m = rotation * *m);
     mesh
 }
 
-/// A strip pulled along weft by two clips, and the force that the pulling clip exerts, N.
+/// A strip stretched along weft by two clips, and the force of the pulling clip, N.
 ///
 /// ```text
 ///  clip 0 ▌▔▔▔▔▔▔▔▔▐ clip 1 →      force / width = σ(λ − 1),  StVK: λ σ((λ² − 1)/2)
 /// ```
 ///
-/// Planar; the start is stretched evenly.
+/// Planar; starts from uniform stretch.
 ///
-/// * `stiffness` — of weft and warp, N/m; there is no shear
+/// * `stiffness` — of weft and warp, N/m; no shear
 ///
 /// # Errors
 /// A stiffness that is not finite.
@@ -196,10 +196,10 @@ pub fn strip(model: Model, diagonals: Diagonals, stiffness: f64, stretch: f64) -
     Ok((sample, 0.04 * nominal_stress))
 }
 
-/// An irregular mesh whose border is held where an affine map takes it. The start is the map, everywhere: an exact
+/// An irregular mesh whose border is held on an affine map. It starts on the map everywhere, which is an exact
 /// equilibrium of every triangle model.
 ///
-/// Springs need a grid and get one; their inner nodes are in balance as well.
+/// Springs use a regular grid; their inner nodes are in equilibrium as well.
 ///
 /// # Errors
 /// A stiffness that is not finite.
@@ -230,10 +230,10 @@ pub fn patch(model: Model, map: Matrix3x2<f64>) -> Result<Sample> {
     Ok(sample)
 }
 
-/// A sheet that hangs from one clip along its upper side; the clip's force is the sheet's weight.
+/// A sheet hanging from one clip along its upper side; the clip force is the sheet's weight.
 ///
 /// # Errors
-/// Fewer than two nodes a side.
+/// Fewer than two nodes per side.
 pub fn hanging_sheet(model: Model, nodes: usize) -> Result<Sample> {
     let mut sample =
         Sample::at_rest(square(nodes, Diagonals::Alternating)?, model, fabric(model, [300.0, 30.0, 1e-6])?);
@@ -242,17 +242,17 @@ pub fn hanging_sheet(model: Model, nodes: usize) -> Result<Sample> {
     Ok(sample)
 }
 
-/// A square that juts out horizontally from a clamp along its first two columns, and sags under its weight.
+/// A square that juts out horizontally from a clamp along its first two columns and sags under its weight.
 ///
 /// ```text
 ///  ▐▔▔▔▔╲      bending stiffness 1e-5 N·m, flexural rigidity D = 3e-5 N·m: ρgL³/D = 65
 ///         ╲
 /// ```
 ///
-/// * `stretch` — stiffness of weft and warp, N/m; shear is a tenth of it
+/// * `stretch` — stiffness of weft and warp, N/m; a tenth of it in shear
 ///
 /// # Errors
-/// Fewer than two nodes a side.
+/// Fewer than two nodes per side.
 pub fn cantilever(model: Model, nodes: usize, stretch: f64) -> Result<Sample> {
     let curves = fabric(model, [stretch, 0.1 * stretch, 1e-5])?;
     let mut sample = Sample::at_rest(square(nodes, Diagonals::Alternating)?, model, curves);
@@ -262,8 +262,8 @@ pub fn cantilever(model: Model, nodes: usize, stretch: f64) -> Result<Sample> {
     Ok(sample)
 }
 
-/// A picture frame: four bars, hinged at the corners, shear the sheet between them by an angle (rad). It buckles out of
-/// its plane; the start is flat but for an irregular 10 µm.
+/// A picture frame: four bars, hinged at the corners, shear the sheet by an angle (rad), and it buckles out of its
+/// plane. The start is flat except for an irregular 10 µm.
 ///
 /// ```text
 ///     ╱▔▔▔▔▔▔╱     bars (clips) 0 left, 1 right, 2 below, 3 above; corners belong to 2 and 3
@@ -271,7 +271,7 @@ pub fn cantilever(model: Model, nodes: usize, stretch: f64) -> Result<Sample> {
 /// ```
 ///
 /// # Errors
-/// Fewer than two nodes a side.
+/// Fewer than two nodes per side.
 pub fn picture_frame(model: Model, nodes: usize, angle: f64) -> Result<Sample> {
     let mut sample =
         Sample::at_rest(square(nodes, Diagonals::Alternating)?, model, fabric(model, [500.0, 20.0, 1e-6])?);
@@ -289,13 +289,13 @@ pub fn picture_frame(model: Model, nodes: usize, angle: f64) -> Result<Sample> {
     Ok(sample)
 }
 
-/// Where a point of a flat sheet goes when the sheet is rolled to a cylinder.
+/// Position of a point of a flat sheet after the sheet is rolled to a cylinder.
 ///
 /// ```text
 /// s along, t across the direction of the curvature:   (s, t) → R sin(s/R), t, R (1 − cos(s/R))
 /// ```
 ///
-/// * `angle` — of the direction in which the sheet curves, to the x axis, rad
+/// * `angle` — angle between the direction of curvature and the x axis, rad
 /// * `radius` — R, m
 pub fn rolled(point: Vector2<f64>, angle: f64, radius: f64) -> Vector3<f64> {
     let (sin, cos) = angle.sin_cos();

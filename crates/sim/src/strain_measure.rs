@@ -1,22 +1,22 @@
-//! The strain measures of the models, and what each is in a laboratory.
+//! Strain measures of the models, and the corresponding laboratory measures.
 //!
 //! ```text
-//!                 strain of an element              physical measure p          load there
-//! Green           E = (λ² − 1)/2                    λ − 1                       P = λ σ(E)
-//! engineering     λ − 1                             λ − 1                       P = σ(λ − 1)
-//! shear           w_u·w_v = sin γ                   γ, picture frame            S = σ(sin γ)
-//! diagonal        ε± = √(1 ± sin γ) − 1             γ, picture frame            S cos γ = dW/dγ, W = ½ W_c(ε₊) + ½ W_c(ε₋)
-//! hinge           3 κ on a regular grid             κ, rolled sheet             M = σ(3κ)
-//! ring-2 springs  of each mesh its own              κ, rolled sheet             see Rolled
+//!                 strain of an element          physical measure p          load there
+//! Green           E = (λ² − 1)/2                λ − 1                       P = λ σ(E)
+//! engineering     λ − 1                         λ − 1                       P = σ(λ − 1)
+//! shear           w_u·w_v = sin γ               γ, picture frame            S = σ(sin γ)
+//! diagonal        ε± = √(1 ± sin γ) − 1         γ, picture frame            S cos γ = dW/dγ, W = ½ W_c(ε₊) + ½ W_c(ε₋)
+//! hinge           3 κ on a regular grid         κ, rolled sheet             M = σ(3κ)
+//! ring-2 springs  depends on the mesh           κ, rolled sheet             see Rolled
 //! ```
 //!
-//! P is the force per rest width of a strip (engineering strain, nominal stress), S the force along a bar per its length,
-//! M the moment per width. Diagonals: both of square cells.
+//! P is the force per rest width of a strip (engineering strain, nominal stress), S the force along a bar per its
+//! length, M the moment per width. Diagonals: both diagonals of square cells.
 
 use crate::curve::soundness::{BENDING_STIFFNESS, MEMBRANE_STIFFNESS};
 
-/// A hinge's own strain per curvature where a regular grid is rolled about one of its axes; the flexural
-/// rigidity is as many times the hinge's stiffness.
+/// Ratio of a hinge's own strain to the curvature, for a regular grid rolled about one of its axes. The flexural
+/// rigidity exceeds the hinge's stiffness by the same factor.
 ///
 /// ```text
 /// ε = 3κ    D = 3k        κ in 1/m, D and k in N·m
@@ -25,26 +25,27 @@ use crate::curve::soundness::{BENDING_STIFFNESS, MEMBRANE_STIFFNESS};
 /// Source: h₀ = a third of the mean height; docs/model.md, "What a hinge's stiffness means".
 pub const HINGE_STRAIN_PER_CURVATURE: f64 = 3.0;
 
-/// The strain of a component in a model; its stress is the conjugate one.
+/// Strain measure of a component in a model; the stress is conjugate to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StrainMeasure {
     /// Green strain, second Piola–Kirchhoff (PK2) stress per width.
     Green,
     /// Engineering strain, nominal stress per width.
     Engineering,
-    /// w_u·w_v of triangles.
+    /// w_u·w_v of a triangle.
     Shear,
     /// Engineering strain of the cells' diagonals.
     Diagonal,
-    /// Of discrete shells, 1/m.
+    /// Hinge strain of discrete shells, 1/m.
     Hinge,
-    /// Of springs over two segments of a grid. Only a mesh makes a curvature of it:
+    /// Strain of springs over two segments of a grid. Its curvature depends on the mesh:
     /// [`Bending::rolled`](crate::bending::Bending::rolled).
     RingTwo,
 }
 
 impl StrainMeasure {
-    /// Strain and stress in words; of hinges and ring-2 springs, whose tables are in physical terms, curvature and moment.
+    /// Names of strain and stress. Curvature and moment for hinges and ring-2 springs, whose tables are in physical
+    /// measures.
     pub fn names(self) -> [&'static str; 2] {
         match self {
             Self::Green => ["Green strain", "PK2 stress"],
@@ -55,12 +56,12 @@ impl StrainMeasure {
         }
     }
 
-    /// True if the strain is 1/m, the stress N and the stiffness N·m; else 1, N/m and N/m.
+    /// True if strain, stress and stiffness are in 1/m, N and N·m; otherwise they are in 1, N/m and N/m.
     pub fn is_per_metre(self) -> bool {
         self == Self::Hinge
     }
 
-    /// Strain of the elements over the strain or curvature of a table: 3 for hinges, else 1.
+    /// Ratio of element strain to the strain or curvature of a table: 3 for hinges, otherwise 1.
     pub fn strain_per_unit(self) -> f64 {
         match self {
             Self::Hinge => HINGE_STRAIN_PER_CURVATURE,
@@ -68,7 +69,7 @@ impl StrainMeasure {
         }
     }
 
-    /// Between which the largest stiffness of a cloth lies, in the units of stiffness; `None` where it depends on the mesh.
+    /// Plausible range of a cloth's largest stiffness, in the units of stiffness; `None` if it depends on the mesh.
     pub fn plausible_stiffness(self) -> Option<[f64; 2]> {
         match self {
             Self::Green | Self::Engineering | Self::Shear | Self::Diagonal => Some(MEMBRANE_STIFFNESS),
@@ -77,8 +78,8 @@ impl StrainMeasure {
         }
     }
 
-    /// The physical measure at a strain: extension over rest length, shear angle in rad, or curvature in 1/m; `None` for
-    /// ring-2 springs, and where no cloth has the strain.
+    /// Physical measure at a strain: extension over rest length, shear angle in rad, or curvature in 1/m. `None` for
+    /// ring-2 springs and for impossible strains.
     pub fn physical(self, strain: f64) -> Option<f64> {
         let physical = match self {
             // Without cancellation: (λ² − 1)/(λ + 1).
@@ -92,7 +93,7 @@ impl StrainMeasure {
         physical.is_finite().then_some(physical)
     }
 
-    /// The strain at a physical measure; `None` for ring-2 springs.
+    /// Strain at a physical measure; `None` for ring-2 springs.
     pub fn strain(self, physical: f64) -> Option<f64> {
         Some(match self {
             Self::Green => physical * (1.0 + 0.5 * physical),
@@ -104,10 +105,10 @@ impl StrainMeasure {
         })
     }
 
-    /// The load at a physical measure: force per rest width or per length of a bar, N/m, or moment per width, N; `None` for
+    /// Load at a physical measure: force per rest width or per bar length, N/m, or moment per width, N; `None` for
     /// ring-2 springs.
     ///
-    /// * `stress` — at a strain of the elements
+    /// * `stress` — stress at an element strain
     pub fn load(self, physical: f64, stress: impl Fn(f64) -> f64) -> Option<f64> {
         let own = stress(self.strain(physical)?);
         Some(match self {
@@ -124,12 +125,12 @@ impl StrainMeasure {
         })
     }
 
-    /// Strain and secant stiffness in another measure that bear the same load as a stress here does at a strain of zero or
-    /// more; `None` where either is that of ring-2 springs.
+    /// Strain and secant stiffness in another measure that give the same load as a stress in this measure at a strain ≥
+    /// 0; `None` if either measure is that of ring-2 springs.
     pub fn secant_in(self, other: Self, strain: f64, stress: impl Fn(f64) -> f64) -> Option<[f64; 2]> {
-        // At rest, as close to it: the stiffness there is a limit.
+        // The stiffness at rest is a limit: evaluate it nearby.
         let physical = self.physical(strain.max(1e-6))?;
-        // The load of a stiffness of one.
+        // Load for a stiffness of one.
         let unit = other.load(physical, |strain| strain)?;
         let there = if strain == 0.0 { 0.0 } else { other.strain(physical)? };
         Some([there, self.load(physical, stress)? / unit])
@@ -161,7 +162,8 @@ mod tests {
         assert_eq!(StrainMeasure::Shear.physical(1.2), None);
     }
 
-    /// Virtual work: the load is the derivative of the energy over the physical measure, per what it acts through.
+    /// Virtual work: the load is the derivative of the energy with respect to the physical measure, per unit of width
+    /// or length.
     #[test]
     fn a_load_is_conjugate_to_its_physical_measure() {
         let curve = StiffnessCurve::new(vec![0.0, 0.5], vec![2.0, 5.0], NegativeStrain::Odd).unwrap();

@@ -1,4 +1,4 @@
-//! The assembled cloth against finite differences, and as a whole under rigid motion.
+//! The assembled cloth against finite differences, and under rigid motions.
 //!
 //! ```text
 //!  ▌▔▔▔▔▔▐   goal    gradient = dE/dx, Hessian and clip border = d(gradient)/dx, parameter gradient = d(gradient)/dk
@@ -16,7 +16,7 @@ use cloth_sim::mesh::{Diagonals, Grid};
 use cloth_sim::samples::{GRAVITY, Sample};
 use nalgebra::{DMatrix, Rotation3, Vector3};
 
-/// Every component with a nonlinear curve (planar: the membrane's only).
+/// All components, or those of the membrane in planar problems, with nonlinear curves.
 fn curves(model: Model, planar: bool) -> Curves {
     let component = |component: Component| {
         let scale = if component.is_bending() { 1e-5 } else { 200.0 };
@@ -48,7 +48,7 @@ fn cases() -> impl Iterator<Item = (String, Sample)> {
     })
 }
 
-/// The whole state from the unknowns alone.
+/// The full state from the unknowns alone.
 fn state(cloth: &Cloth, start: &[f64], unknowns: &[f64]) -> Vec<f64> {
     let mut x = start.to_vec();
     cloth.unknown_coordinates().iter().zip(unknowns).for_each(|(&coordinate, &value)| x[coordinate] = value);
@@ -73,7 +73,7 @@ fn the_gradient_is_the_derivative_of_the_energy() {
         let (energy, gradient, _) = gradient(&cloth, &sample.curves, &sample.start);
         assert!((energy - cloth.energy(&sample.curves, &sample.start)).abs() <= 1e-14 * energy.abs());
         let value = |x: &[f64]| vec![cloth.energy(&sample.curves, x)];
-        // Held nodes included; a planar problem has no forces across its plane.
+        // Held nodes included; a planar problem has no out-of-plane forces.
         let error = derivative_error(value, &gradient, &sample.start, 1e-6, 0.0);
         assert!(error < 1e-7, "{name}: {error:e}");
     }
@@ -101,7 +101,7 @@ fn the_hessian_and_the_clip_border_are_derivatives_of_the_gradient() {
     }
 }
 
-/// Every group's nodes as far apart as they are at rest.
+/// Moves the nodes of every group to their rest distances.
 fn parallel(mut sample: Sample, tied: &[Vec<usize>]) -> Sample {
     for group in tied {
         for &node in group {
@@ -117,7 +117,7 @@ fn tied_cloth(sample: &Sample, tied: &[Vec<usize>]) -> Cloth {
     Cloth::new(&sample.problem(&components, tied)).expect("groups that are held or free")
 }
 
-/// The columns of the crumpled sheet.
+/// Columns of the crumpled sheet.
 fn lines() -> Vec<Vec<usize>> {
     (0..4).map(|column| (0..5).map(|row| 4 * row + column).collect()).collect()
 }
@@ -166,7 +166,7 @@ fn nodes_that_move_alike_share_their_unknowns() {
     for (name, sample) in cases() {
         let held = |node: &usize| !sample.held.iter().any(|held| held.node == *node);
         let free: Vec<usize> = (0..sample.mesh.len()).filter(held).collect();
-        // Groups of neighbours, which share elements, and of nodes apart; as far apart as they are at rest.
+        // A group of neighbours, which share elements, and one of distant nodes, both at their rest distances.
         let tied = vec![free[..4].to_vec(), vec![free[5], free[free.len() - 1]]];
         let sample = parallel(sample, &tied);
         let cloth = tied_cloth(&sample, &tied);
@@ -194,7 +194,7 @@ fn the_clamped_hessian_has_no_negative_eigenvalue() {
     for (name, sample) in cases() {
         let cloth = sample.cloth().unwrap();
         let mut x = sample.start.clone();
-        // Far into compression, where the true Hessian is indefinite.
+        // Strong compression, where the true Hessian is indefinite.
         x.iter_mut().step_by(3).for_each(|x| *x *= 0.3);
         let lowest = |curvature| {
             let mut values = Vec::new();
@@ -216,7 +216,7 @@ fn the_parameter_gradient_is_the_derivative_in_every_control_value() {
             cloth.parameter_gradient(&sample.curves, component, &sample.start, &mut columns);
             let curve = sample.curves.get(component).unwrap();
             let value = |k: &[f64]| {
-                // Alone, so that its forces do not drown in those of the others.
+                // Alone, so that its forces are not lost among the others.
                 let curves = [(component, curve.with_stiffnesses(k.to_vec()).unwrap())].into_iter().collect();
                 gradient(&cloth, &curves, &sample.start).1
             };

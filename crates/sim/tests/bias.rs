@@ -1,8 +1,8 @@
-//! Locking: yarns that hardly stretch, in a mesh without an edge along each of them.
+//! Locking: nearly inextensible yarns in a mesh without an edge along each of them.
 //!
 //! ```text
 //!   ▐╲╱╲╱╲╱╲▌ →   a strip 1:2 cut at 45°, pulled by 10 %      goal    the shear of the cloth resists, not the mesh
-//!   ▐╱╲╱╲╱╲╱▌     k = 1e5 N/m along the yarns, 30 in shear    passes  crossed ≤ a tenth of the force with '/', 1 % mesh error
+//!   ▐╱╲╱╲╱╲╱▌     k = 1e5 N/m along the yarns, 30 in shear    passes  crossed ≤ a tenth of '/', 1 % mesh error
 //! ```
 
 use cloth_sim::equilibrium::{Settings, Solver};
@@ -36,7 +36,7 @@ fn force(cells: usize, diagonals: Diagonals) -> f64 {
     solver.clip_forces()[1].x
 }
 
-/// Measured, N, by cells across the strip. Chessboard cells lock unless there is an even number of them:
+/// Measured, N, by the number of cells across the strip. Alternating cells lock if the number is odd:
 ///
 /// ```text
 /// cells          3      4      5      8      9     15     16     32

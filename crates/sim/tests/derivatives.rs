@@ -1,4 +1,4 @@
-//! Every element against finite differences, rigid motions, and itself clamped.
+//! Every element against finite differences, under rigid motions, and clamped.
 //!
 //! ```text
 //! goal    ∇ε and ∇²ε of every element are those of its strain, in any state short of collapse
@@ -6,7 +6,7 @@
 //! passes  gradient 1e-6, Hessian 1e-5 relative; forces unchanged by a rigid motion to 1e-9
 //! ```
 //!
-//! The seeded states number 2 000 an element here; `full_count` (ignored) runs 1e5.
+//! 2 000 seeded states per element; `full_count` (ignored) runs 1e5.
 
 #![allow(clippy::print_stdout)]
 
@@ -20,7 +20,7 @@ use rand::{Rng, SeedableRng, rngs::StdRng};
 
 const CELL: f64 = 4e-3;
 
-/// Largest relative errors over many states: gradient, Hessian, and force change under a rigid motion.
+/// Largest relative errors over many states: gradient, Hessian, force change under a rigid motion.
 #[derive(Debug, Default)]
 struct Errors {
     gradient: f64,
@@ -61,7 +61,7 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
 ) {
     let strains = |x: &[f64]| element.strains(&stack::<K, N>(x)).to_vec();
     let gradients = |x: &[f64]| flatten(&element.gradients(&stack::<K, N>(x)));
-    // A hundredth of the smallest distance: derivatives of an angle grow as the wing shrinks.
+    // A hundredth of the smallest distance: derivatives of an angle grow as the wing height shrinks.
     let size = smallest_distance::<K, N>(x);
     let h = 1e-3 * size;
     let gradient = gradients(x);
@@ -75,7 +75,7 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         let hessian = dense(&blocks);
         let component = |x: &[f64]| gradients(x)[c * K * N..(c + 1) * K * N].to_vec();
         let rows: Vec<f64> = hessian.transpose().iter().copied().collect();
-        // Where the strain is linear its Hessian is zero: compare with gradient/size.
+        // A linear strain has a zero Hessian: compare with gradient/size.
         let scale = 1e-3 * gradient.iter().fold(0.0, |m: f64, g| m.max(g.abs())) / size;
         errors.hessian = errors.hessian.max(derivative_error(component, &rows, x, h, scale));
     }
@@ -100,7 +100,7 @@ fn smallest_distance<const K: usize, const N: usize>(x: &[f64]) -> f64 {
     smallest
 }
 
-/// Force change when the state is turned by any rotation and moved by up to a metre.
+/// Force change when the state is rotated arbitrarily and moved by up to a metre.
 fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
     element: &E,
     x: &[f64],
@@ -117,8 +117,8 @@ fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
         std::array::from_fn::<_, K, _>(|a| (0..S).map(|c| gradients[c][a] * strains[c]).sum::<Vector3<f64>>())
     };
     let (before, after) = (force(&nodes), force(&moved));
-    // The element's own largest force, but no less than that of a strain of one: at rest it has none. (A hinge's strain
-    // is in 1/m and reaches 10³.)
+    // Relative to the element's largest force, but at least to that of a unit strain: at rest there is no force. (A
+    // hinge's strain is in 1/m and reaches 10³.)
     let unit = element.gradients(&nodes).iter().flatten().fold(0.0, |m: f64, g| m.max(g.norm()));
     let largest = before.iter().fold(unit, |m: f64, f| m.max(f.norm()));
     for (before, after) in before.iter().zip(&after) {
@@ -126,7 +126,7 @@ fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
     }
 }
 
-/// A random state of `K` nodes whose rest places are given: an affine map, a jitter, and a rigid motion.
+/// A random state of `K` nodes with given rest positions: an affine map, a jitter and a rigid motion.
 fn state<const K: usize>(rest: &[[f64; 3]; K], rng: &mut StdRng) -> Vec<f64> {
     let stretch = rng.random_range(0.3..1.8);
     let shear = rng.random_range(-0.8..0.8);
@@ -191,7 +191,7 @@ fn run(states: usize) {
         let flat = planar(&x);
         let node = |x: &[f64], i: usize| Vector2::new(x[2 * i], x[2 * i + 1]);
         let collapsed = (0..3).any(|i| (node(&flat, i) - node(&flat, (i + 1) % 3)).norm() < 0.02 * CELL);
-        // Soft constraints have no derivative at |w| = 0 (numerics: the length is smoothed there).
+        // Soft constraints have no derivative at |w| = 0, where the implementation smooths the length.
         let [w_u, w_v] = shape.deformation(&stack::<3, 2>(&flat));
         let short = w_u.norm() < 0.1 || w_v.norm() < 0.1;
         check::<3, 3, 3, _>(&StvkTriangle(shape), &x, &mut rng, &mut stvk);
@@ -217,7 +217,7 @@ fn run(states: usize) {
             edge.cross(&(nodes[wing] - nodes[0])).norm() / edge.norm()
         };
         let turn = fold.strains(&nodes)[0] * fold.width + fold.rest_angle;
-        // Away from a collapsed wing and from the jump at ±π.
+        // Avoid collapsed wings and the jump at ±π.
         if height(2).min(height(3)) > 0.1 * CELL && turn.abs() < 2.8 {
             folds += 1;
             check::<4, 3, 1, _>(&fold, &x, &mut rng, &mut shell);

@@ -1,4 +1,4 @@
-//! Sheets let down to rest.
+//! Descent of sheets to rest.
 //!
 //! ```text
 //!   ├──────────┐  flat       a sheet of 0.1 m clamped along one edge, level at first

@@ -1,7 +1,7 @@
 //! Clips that move far from one frame to the next.
 //!
 //! ```text
-//!   ▐▔▔▔▔▌ → → →      a strip's clip jumps by 50 %      goal    one call, as many steps as it takes
+//!   ▐▔▔▔▔▌ → → →      a strip's clip jumps by 50 %      goal    one call, as many steps as needed
 //!   ▐▔▔╲  ↻           a clamp turns by 120°             passes  the energy of 20 fixed steps, to 1e-8
 //! ```
 
@@ -12,10 +12,10 @@ use cloth_sim::mesh::Diagonals;
 use cloth_sim::samples::{self, GRAVITY, SIDE, Sample};
 use nalgebra::{Rotation3, Vector3};
 
-/// Where a rest point of the last clip is after a share of the way.
+/// Position of a rest point of the last clip after a share of the motion.
 type Way<'a> = &'a dyn Fn(f64, Vector3<f64>) -> Vector3<f64>;
 
-/// A state whose last clip is some way along.
+/// A state in which the last clip has moved by a share of the motion.
 fn moved(sample: &Sample, x: &[f64], way: Way<'_>, share: f64) -> Vec<f64> {
     let mut x = x.to_vec();
     let last = sample.held.iter().filter_map(|held| held.clip).max();
@@ -26,7 +26,7 @@ fn moved(sample: &Sample, x: &[f64], way: Way<'_>, share: f64) -> Vec<f64> {
     x
 }
 
-/// Moves the last clip in one call, and in twenty solves; returns what the call found.
+/// Moves the last clip in one call and in twenty solves; returns the outcome of the call.
 fn compare(sample: &Sample, way: Way<'_>) -> Equilibrium {
     let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
     let cloth = sample.cloth().expect("the sample is valid");
@@ -49,7 +49,7 @@ fn compare(sample: &Sample, way: Way<'_>) -> Equilibrium {
     for node in sample.held.iter().map(|held| 3 * held.node) {
         assert_eq!(x[node..node + 3], target[node..node + 3]);
     }
-    // Gradient and factor are those of the state returned.
+    // Gradient and factor belong to the returned state.
     let gradient = solver.gradient().to_vec();
     let again = solver.solve(&sample.curves, &mut x, &settings);
     assert_eq!((again.iterations, &gradient[..]), (0, solver.gradient()), "{again:?}");
@@ -78,8 +78,8 @@ fn a_clip_jumps_by_half_the_length() {
     }
 }
 
-/// A horizontal clamp turns down and back up, a hanging sheet about the vertical. In the plane the whole turn in one step
-/// folds triangles over, so that it takes several.
+/// A horizontal clamp turns down and back up, a hanging sheet about the vertical. In planar problems the whole turn in
+/// one step flips triangles, so it takes several.
 #[test]
 fn a_clamp_turns_by_120_degrees() {
     let middle = Vector3::new(0.5 * SIDE, SIDE, 0.0);

@@ -1,4 +1,4 @@
-//! Cloth in motion, against closed forms and against itself at other steps.
+//! Cloth in motion, against closed forms and other step sizes.
 
 #![allow(clippy::unwrap_used)]
 
@@ -17,12 +17,12 @@ use nalgebra::{DMatrix, Vector2, Vector3};
 const DIRECT: Integrator =
     Integrator::ImplicitEuler { newton: Newton::Converged { tolerance: 1e-6 }, linear: LinearSolver::Direct };
 
-/// The same to another tolerance.
+/// The same integrator to a tolerance of 1e-10.
 fn exact(linear: LinearSolver) -> Integrator {
     Integrator::ImplicitEuler { newton: Newton::Converged { tolerance: 1e-10 }, linear }
 }
 
-/// A horizontal square that hangs from two corners, at rest.
+/// A horizontal square hanging from two corners, at rest.
 fn hung(model: Model, nodes: usize, stiffness: f64) -> Sample {
     let curves = samples::fabric(model, [500.0 * stiffness, 50.0 * stiffness, 1e-6 * stiffness]).unwrap();
     let mesh = samples::square(nodes, Diagonals::Alternating).unwrap();
@@ -33,7 +33,7 @@ fn hung(model: Model, nodes: usize, stiffness: f64) -> Sample {
     sample
 }
 
-/// A cloth that nothing needs to hold.
+/// A cloth that may be free.
 fn in_motion(sample: &Sample) -> Cloth {
     let components: Vec<Component> = sample.curves.components().collect();
     Cloth::in_motion(&sample.problem(&components, &[])).unwrap()
@@ -87,7 +87,7 @@ fn steps_so_short_that_rounding_hides_the_weight_still_add_up() {
 
 #[test]
 fn the_integrators_have_their_orders() {
-    // Soft constraints are smooth where cloth is compressed, too.
+    // Soft constraints are smooth in compression, too.
     let mut sample = hung(Model::SoftConstraint, 4, 0.02);
     sample.perturb(2e-3);
     let run = |integrator, step| after(&sample, &Settings { step, integrator, ..Settings::default() }, 0.02);
@@ -171,7 +171,7 @@ fn runge_kutta_is_stable_up_to_its_limit_and_refused_beyond() {
         for _ in 0..10_000 {
             assert_eq!(motion.step().status, Status::Done);
         }
-        // It loses energy, as it may, and gains none.
+        // The integrator loses energy but gains none.
         let found = motion.energies();
         assert!(found.numerical >= -1e-4 * found.weight.abs(), "{found:?}");
         let refused = Motion::new(&cloth, &sample.curves, start(), &settings(1.01)).err();
@@ -245,7 +245,7 @@ fn guided_nodes_keep_to_their_directions() {
             }
         }
     }
-    // Nowhere to go is as good as held.
+    // A node guided in no direction behaves like a held one.
     let guided = after(&sample, &Settings::default(), 0.1);
     sample.held = corners.iter().map(|&node| Held { node, clip: None }).collect();
     sample.guided.clear();
@@ -254,7 +254,7 @@ fn guided_nodes_keep_to_their_directions() {
 
 #[test]
 fn damping_has_the_rate_that_its_law_says() {
-    // A triangle of unit height, clamped along its base, in its plane: one mode along it, of stiffness A k/H².
+    // A planar triangle of unit height, clamped along its base: one mode along the base, of stiffness A k/H².
     let curves = samples::linear_curves(Model::Stvk, &[(Component::StretchWeft, 100.0)]).unwrap();
     let positions = [[0.0, -0.5], [1.0, 0.0], [0.0, 0.5]].map(|[x, y]| Vector3::new(x, y, 0.0));
     let material: Vec<Vector2<f64>> = positions.iter().map(|p| p.xy()).collect();
@@ -273,7 +273,7 @@ fn damping_has_the_rate_that_its_law_says() {
             let settings = Settings { step, integrator, damping, wind: None };
             let mut motion = Motion::new(&cloth, &sample.curves, sample.start.clone(), &settings).unwrap();
             (0..10 * steps).for_each(|_| assert_eq!(motion.step().status, Status::Done));
-            // After whole periods the displacement has shrunk by exp(−ζωt); implicit Euler adds ωh/2 to ζ.
+            // After whole periods the displacement has decayed by exp(−ζωt); implicit Euler adds ωh/2 to ζ.
             let own = if integrator == DIRECT { 0.5 * frequency * step } else { 0.0 };
             let left = (motion.positions()[3] - 1.0) / 1e-6;
             let expected = (-(share + own) * frequency * motion.time()).exp();
@@ -294,7 +294,7 @@ fn a_falling_sheet_comes_to_the_speed_of_its_drag() {
     (0..500).for_each(|_| assert_eq!(motion.step().status, Status::Done));
     let expected = (2.0 * samples::AREAL_DENSITY * GRAVITY / (wind.density * wind.normal_drag)).sqrt();
     assert!((motion.greatest_speed() / expected - 1.0).abs() < 1e-6, "{}", motion.greatest_speed());
-    // What falls steadily loses to the air what its weight gives.
+    // In steady fall, the air dissipates the work of the weight.
     let before = motion.energies();
     (0..100).for_each(|_| assert_eq!(motion.step().status, Status::Done));
     let after = motion.energies();
@@ -323,7 +323,7 @@ fn misuse_is_refused() {
     let weightless = Sample { areal_density: 0.0, ..sample.clone() };
     let cloth = in_motion(&weightless);
     assert!(Motion::new(&cloth, &sample.curves, sample.start.clone(), &Settings::default()).is_err());
-    // Statics still needs every part held.
+    // Statics still requires every part to be held.
     let mut free = sample.clone();
     free.held.clear();
     assert!(matches!(free.cloth(), Err(Error::Unpinned { free: 6, .. })));
@@ -335,8 +335,8 @@ fn misuse_is_refused() {
     assert!(matches!(free.cloth(), Err(Error::InvalidValue { field: "guided", .. })));
 }
 
-/// Soft cloth under its weight stretches, and is then too stiff for a step that was stable at its start: that is told in the
-/// first steps that make energy, long before numbers are no longer finite.
+/// Soft cloth stretches under its weight until it is too stiff for a step that was stable at the start. The integrator
+/// reports this in the first steps that gain energy, long before numbers become non-finite.
 #[test]
 fn an_explicit_integrator_that_makes_energy_says_so() {
     let mut sample = samples::hanging_sheet(Model::Stvk, 7).unwrap();

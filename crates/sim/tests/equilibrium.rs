@@ -1,8 +1,8 @@
-//! Equilibria: ordinary ones, extreme ones, and those that do not exist.
+//! Equilibria: ordinary, extreme and impossible ones.
 //!
 //! ```text
-//!  ▐▔▔╲    hanging, jutting out, compressed,    goal    converged, or a status that says what is wrong; no panic
-//!      ╲   collapsed, sheared, unheld sheets    passes  as each test says; the numbers are those of the cases
+//!  ▐▔▔╲    hanging, jutting out, compressed,    goal    converged, or a status with the reason; no panic
+//!      ╲   collapsed, sheared, unheld sheets    passes  see each test
 //! ```
 
 use cloth_sim::cloth::Cloth;
@@ -33,7 +33,7 @@ fn without_a_load_there_is_nothing_to_iterate() {
         sample.gravity = Vector3::zeros();
         let (found, x) = solve(&sample, &Settings::default());
         assert_eq!((found.iterations, x), (0, sample.start), "{model}: {found:?}");
-        // Ring-2 springs have no stiffness against bending where the cloth is flat.
+        // A flat sheet of ring-2 springs has no bending stiffness.
         let expected = if model == Model::Springs { Status::Unstable } else { Status::Converged };
         assert_eq!(found.status, expected, "{model}");
     }
@@ -69,7 +69,7 @@ fn compressed(model: Model) -> Sample {
     sample
 }
 
-/// The largest distance from the plane z = 0.
+/// Largest distance from the plane z = 0.
 fn height(x: &[f64]) -> f64 {
     x.iter().skip(2).step_by(3).fold(0.0, |highest, z| highest.max(z.abs()))
 }
@@ -87,7 +87,7 @@ fn a_flat_sheet_in_compression_is_unstable_and_buckles_when_touched() {
     }
 }
 
-/// Mirrored starts reach mirrored states, and what leaves the flat state by itself is one of the two.
+/// Mirrored starts reach mirrored states; the state reached from flat is one of the two.
 #[test]
 fn a_flat_sheet_in_compression_has_two_branches() {
     let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
@@ -97,7 +97,7 @@ fn a_flat_sheet_in_compression_has_two_branches() {
         let (left, x) = solve(&sample, &settings);
         println!("{model}: {left:?}");
         let mut up = sample.clone();
-        // Towards the state that was found, so that all three share the same number of waves.
+        // Start towards the state found, so that all three have the same number of waves.
         up.start.iter_mut().zip(&x).for_each(|(start, x)| *start += 0.1 * (x - *start));
         let mut down = up.clone();
         mirror(&mut down.start);
@@ -111,7 +111,7 @@ fn a_flat_sheet_in_compression_has_two_branches() {
     }
 }
 
-/// Flat, in balance and unstable; in the plane, a chain of yarns in compression.
+/// Flat, balanced and unstable; in planar problems, a chain of yarns in compression.
 #[test]
 fn what_is_unstable_is_left_and_flagged() {
     let frame =
@@ -138,7 +138,7 @@ fn what_is_unstable_is_left_and_flagged() {
         );
         assert!(found.converged() && found.escaped, "{model}: {found:?}");
         assert!(found.energy < 0.99 * stays.energy && found.iterations > stays.iterations);
-        // Gradient and factor are those of the state returned.
+        // Gradient and factor belong to the returned state.
         let (gradient, forces) = (solver.gradient().to_vec(), solver.clip_forces());
         let mut right: Vec<f64> = (0..cloth.unknowns()).map(|i| (i as f64).sin()).collect();
         let mut again = right.clone();
@@ -151,14 +151,14 @@ fn what_is_unstable_is_left_and_flagged() {
     }
 }
 
-/// The picture frame's start without its irregularity.
+/// The picture frame's start without its perturbation.
 fn flat_frame(model: Model) -> Vec<f64> {
     let mut sample = samples::picture_frame(model, 13, 0.2).expect("the sample is valid");
     sample.perturb(-1e-5);
     sample.start
 }
 
-/// Compressed along weft to a third in the plane, with so little shear that the yarns buckle there.
+/// Compressed along weft to a third in the plane, with so little shear stiffness that the yarns buckle in-plane.
 fn crushed(model: Model) -> Sample {
     let mut sample =
         samples::patch(model, Matrix3x2::new(0.3, 0.0, 0.0, 1.0, 0.0, 0.0)).expect("the sample is valid");
@@ -171,8 +171,8 @@ fn crushed(model: Model) -> Sample {
     sample
 }
 
-/// Compressed along weft to a tenth, all around, in the plane. Shear and warp are stiff enough that
-/// the yarns do not buckle.
+/// Compressed along weft to a tenth, held on all sides, in the plane. Shear and warp are stiff enough that the yarns do
+/// not buckle.
 #[test]
 fn a_collapsed_sheet_converges_without_inversion() {
     for model in Model::ALL {
@@ -180,7 +180,7 @@ fn a_collapsed_sheet_converges_without_inversion() {
         let weft = Component::StretchWeft;
         let warp = Component::StretchWarp;
         let stiffnesses = [(weft, 10.0), (warp, 1e4), (Component::Shear, 1000.0)];
-        // Diagonal springs would buckle themselves.
+        // Diagonal springs would buckle as well.
         let count = if model == Model::Springs { 2 } else { 3 };
         sample.curves = samples::linear_curves(model, &stiffnesses[..count]).unwrap();
         sample.planar = true;
@@ -225,7 +225,7 @@ fn both_methods_find_the_same_equilibrium() {
     }
 }
 
-/// The dense stiffness matrix at a state.
+/// Dense stiffness matrix at a state.
 fn stiffness(cloth: &Cloth, curves: &Curves, x: &[f64]) -> DMatrix<f64> {
     let mut values = Vec::new();
     cloth.hessian(curves, x, Curvature::Full, &mut values);
@@ -233,8 +233,9 @@ fn stiffness(cloth: &Cloth, curves: &Curves, x: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(unknowns, unknowns, |i, j| cloth.entry(i, j).map_or(0.0, |place| values[place]))
 }
 
-/// What a dense solve gives: with K after mixed Newton, with K + μI after Levenberg–Marquardt. μ starts at 1e-3 of the mean
-/// diagonal; these steps all succeed, and each leaves a tenth for the next. The mean is that of the last step's matrix.
+/// Compares with a dense solve: with K after mixed Newton, with K + μI after Levenberg–Marquardt. μ starts at 1e-3 of
+/// the mean diagonal and falls to a tenth in each step, since all steps succeed here. The mean is that of the last
+/// step's matrix.
 #[test]
 fn the_published_method_keeps_the_damping_of_its_last_step() {
     let sample = samples::hanging_sheet(Model::Stvk, 5).unwrap();
@@ -245,7 +246,7 @@ fn the_published_method_keeps_the_damping_of_its_last_step() {
     let mut x = sample.start.clone();
     let mut solver = Solver::new(&cloth);
     let right: DVector<f64> = DVector::from_fn(cloth.unknowns(), |i, _| (i as f64).sin());
-    // From the start, and from the equilibrium, where no step is taken and the first μ stands.
+    // From the start, and from the equilibrium, where no step is taken and the initial μ remains.
     for (settings, steps) in [(published, 1..200), (published, 0..1), (newton, 0..1)] {
         let found = solver.solve(curves, &mut x, &settings);
         assert!(found.converged() && steps.contains(&found.iterations), "{found:?}");
@@ -333,7 +334,7 @@ fn what_is_not_finite_is_a_status() {
         sample.start[last] = bad;
         assert_eq!(solve(&sample, &Settings::default()).0.status, Status::NotFinite);
     }
-    // The last corner on its neighbour: a wing without height has a finite energy, and forces that are not.
+    // The last corner on its neighbour: a wing without height has finite energy but non-finite forces.
     let mut sample = sample.clone();
     sample.start.copy_within(last - 5..last - 2, last - 2);
     assert!(sample.cloth().unwrap().energy(&sample.curves, &sample.start).is_finite());
@@ -366,7 +367,7 @@ fn a_stretch_problem_has_two_unknowns_a_node_and_nothing_of_bending() {
             // 6 rows of 8 and 9 columns of 5.
             assert_eq!(springs.len(), 6 * 8 + 9 * 5);
         }
-        // Nodes coupled by springs along the sides of the cells, or by triangles: never across two triangles.
+        // Nodes couple through springs along cell sides or through triangles, never across two triangles.
         let per_node = stretch.entries() as f64 / (stretch.unknowns() as f64);
         assert!(per_node < if model == Model::Springs { 6.0 } else { 8.0 }, "{model}: {per_node}");
         sample.planar = false;

@@ -1,7 +1,7 @@
-//! Hinges and bending springs: the angle, and the flexural rigidity of a sheet that is rolled to a cylinder.
+//! Hinges and bending springs: the angle, and the flexural rigidity of a sheet rolled to a cylinder.
 //!
 //! ```text
-//!    ╭──╮     goal    the angle exact at 0 and near ±π; energy per area = ½ D κ², D the effective rigidity
+//!    ╭──╮     goal    angle exact at 0 and near ±π; energy per area = ½ D κ², D the effective rigidity
 //!   ╱ ↑κ ╲    sheet   a grid rolled at several angles to the weft, radius 10⁴ cells, inner hinges only
 //!             passes  1e-14 rad; D/k = 3, 9, 3 on '/' grids, 3, 3.75, 4.5 on alternating ones, to 0.1 %
 //! ```
@@ -42,7 +42,7 @@ fn the_angle_is_exact_when_flat_and_when_folded_flat() {
             assert!((found.abs() - small).abs() <= 1e-14 * small.max(1e-8), "{small:e}: {found:e}");
             let folded = angle(sign * f64::sin(small), -f64::cos(small));
             assert!((folded.abs() - (PI - small)).abs() <= 1e-14, "{small:e}: {folded}");
-            // Bent up has one sign, bent down the other; folded flat, a rounding decides.
+            // Bent up and bent down have opposite signs; folded flat, rounding decides.
             let up = angle(1.0, 0.0).signum();
             assert_eq!(found.signum(), sign * up, "{small:e}: {found:e}");
             assert!(small < 1e-15 || folded.signum() == sign * up, "{small:e}: {folded}");
@@ -68,7 +68,7 @@ fn the_difference_to_the_rest_angle_takes_the_shorter_way_round() {
     assert!((turn.abs() - (2.0 * PI - 6.0)).abs() < 1e-14, "{turn}");
 }
 
-/// Effective rigidity per stiffness of the hinges whose edges lie in the window [¼, ¾) of the sheet.
+/// Effective rigidity over the stiffness of the hinges whose edges lie in the window [¼, ¾) of the sheet.
 fn rigidity(mesh: &Mesh, degrees: f64) -> f64 {
     let radius = 1e4 * SIDE / 16.0;
     let x: Vec<f64> = mesh
@@ -125,17 +125,17 @@ fn hinges_are_classed_by_the_yarn_that_they_bend() {
     let hinges = Hinge::all(&mesh).unwrap();
     let classes = [Component::BendWeft, Component::BendWarp, Component::BendDiagonal];
     assert_eq!(classes.map(|component| count(&hinges, component)), [2, 2, 4]);
-    // An edge along warp bends weft: its wings lie to the left and right.
+    // An edge along warp bends weft: its wings are to the left and right.
     let weft = hinges.iter().find(|h| h.component == Component::BendWeft).unwrap();
     let [from, to] = [weft.nodes[0], weft.nodes[1]].map(|node| mesh.material[node]);
     assert!((from.x - to.x).abs() < 1e-15);
     let bias = samples::cut_on_the_bias(mesh, PI / 4.0);
     let hinges = Hinge::all(&bias).unwrap();
-    // '/' turned by 45° runs along warp, and the sides of the cells along neither yarn.
+    // '/' rotated by 45° runs along warp, and the cell sides along neither yarn.
     assert_eq!(classes.map(|component| count(&hinges, component)), [4, 0, 4]);
 }
 
-/// Ring-2 springs shorten by κ²l²/24 over a chord l: no stiffness at flat, energy as the fourth power.
+/// Ring-2 springs shorten by κ²l²/24 over a chord l: no stiffness when flat, and energy grows with the fourth power.
 #[test]
 fn bending_springs_have_the_energy_of_the_chord() {
     let mesh = samples::square(9, Diagonals::Forward).unwrap();
@@ -156,8 +156,8 @@ fn bending_springs_have_the_energy_of_the_chord() {
     assert!((energy(radius) / energy(2.0 * radius) - 16.0).abs() < 0.02);
 }
 
-/// Segments that keep their length, each turned by κh against the one before: the moment per width is the derivative of
-/// the energy per area. So for hinges, of which a roll bends those along it, and for ring-2 springs.
+/// Segments keep their length, each rotated by κh against the previous one: the moment per width is the derivative of
+/// the energy per area. This holds for hinges, where a roll bends those along it, and for ring-2 springs.
 #[test]
 fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
     let mesh = samples::square(9, Diagonals::Forward).unwrap();
@@ -168,7 +168,7 @@ fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
         assert!(bending.rolled(Component::BendWarp).is_none());
         let curve =
             StiffnessCurve::new(vec![0.0, 1e-3, 2e-3], vec![3.0, 4.0, 6.0], NegativeStrain::Odd).unwrap();
-        // Energy per area that bends: a hinge stands for the cells beside it, a spring for its own cloth.
+        // Energy per bent area: a hinge represents the adjacent cells, a spring its own cloth.
         let energy = |curvature: f64| -> f64 {
             let mut line = vec![Vector3::zeros()];
             for i in 0..8 {
@@ -192,7 +192,7 @@ fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
                 }
             }
         };
-        // Curvatures at which the strains are those of the curve.
+        // Curvatures whose strains lie within the curve.
         for strain in [4e-4, 1.5e-3] {
             let curvature = way.curvature(strain);
             assert!((way.strain(curvature) / strain - 1.0).abs() < 1e-12);
@@ -204,14 +204,14 @@ fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
     }
 }
 
-/// A square hung off an edge, Γ = 10, on 25×25 nodes; all bending alike. How far the tip's two corners droop, m.
+/// Droop of the tip's two corners, m, of a square hung off an edge, Γ = 10, on 25×25 nodes; equal bending components.
 fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
     let (density, overhang) = (0.2, 0.085);
     let rigidity = density * samples::GRAVITY * overhang * overhang * overhang / 10.0;
     let mesh = samples::square(25, diagonals).expect("a proper square");
     let lines: Vec<Vec<usize>> =
         (0..25).map(|column| (0..25).map(|row| row * 25 + column).collect()).collect();
-    // The sheet bends from the middle between its fourth and fifth line on, which is 85 mm from its tip.
+    // The sheet bends from the middle between its fourth and fifth lines on, 85 mm from its tip.
     let (held, free) = lines.split_at(5);
     let held: Vec<Held> = held.iter().flatten().map(|&node| Held { node, clip: None }).collect();
     let curve = |component: Component| {
@@ -238,8 +238,8 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
     [24, 624].map(|corner| -x[3 * corner + 2])
 }
 
-/// Hinges tie bending to twist: split all one way a sheet twists, split in turn every other node gives way and it hangs
-/// lower. Lines that move as a whole leave neither: the sheet is the same however it is split.
+/// Hinges couple bending to twist: with a single diagonal direction a sheet twists; with alternating diagonals every
+/// other node yields and it hangs lower. Tied lines remove both effects, and the split of the cells no longer matters.
 #[test]
 fn a_sheet_that_bends_as_a_cylinder_knows_no_diagonals() {
     let [forward, alternating, cylinder, other] = [
@@ -250,7 +250,7 @@ fn a_sheet_that_bends_as_a_cylinder_knows_no_diagonals() {
     ]
     .map(|(diagonals, tied)| tips(diagonals, tied));
     println!(
-        "droop of the tip's corners, m: '/' {forward:.4?}, in turn {alternating:.4?}, as a cylinder {cylinder:.4?}"
+        "droop of the tip's corners, m: '/' {forward:.4?}, alternating {alternating:.4?}, as a cylinder {cylinder:.4?}"
     );
     assert!((forward[0] - forward[1]).abs() > 2e-3);
     assert!((alternating[0] - alternating[1]).abs() < 1e-4 && alternating[0] > cylinder[0] + 1e-3);

@@ -1,10 +1,10 @@
-//! How many Newton steps and factorisations equilibria take.
+//! Newton steps and factorisations per equilibrium.
 //!
 //! ```text
 //!  ▐▔▔╲      cantilever, stiffness 1.5 times off; stretched sheet; picture frame that buckles
 //!      ╲     goal    the counts that make a fit fast
-//!            passes  cantilever ≤ 8 steps, also with stretch : bending = 1e9; stretch warm ≤ 2 factorisations; into the
-//!                    buckle ≤ 30
+//!            passes  cantilever ≤ 8 steps, also with stretch : bending = 1e9; stretch warm ≤ 2 factorisations;
+//!                    into the buckle ≤ 30
 //! ```
 
 use cloth_sim::cloth::Cloth;
@@ -12,7 +12,7 @@ use cloth_sim::equilibrium::{Equilibrium, Settings, Solver};
 use cloth_sim::material::{Component, Curves, Model};
 use cloth_sim::samples::{self, Sample};
 
-/// Solves with curves whose component is `factor` times as stiff, from there with the true ones.
+/// Solves with one component `factor` times as stiff, then from there with the true curves.
 fn warm(sample: &Sample, components: &[Component], factor: f64) -> Equilibrium {
     let cloth: Cloth = sample.cloth().expect("the sample is valid");
     let mut solver = Solver::new(&cloth);
@@ -75,7 +75,7 @@ fn a_picture_frame_buckles() {
     }
 }
 
-/// Clamped matrices alone, far too stiff along the buckle, need up to 62 factorisations.
+/// With clamped matrices alone, far too stiff along the buckle, up to 62 factorisations are needed.
 #[test]
 fn a_sheet_does_not_creep_into_its_buckle() {
     for angle in [0.05, 0.1, 0.2] {
@@ -91,7 +91,7 @@ fn a_warm_stretched_sheet_takes_two_factorisations() {
     for model in Model::ALL {
         let (mut sample, _) =
             samples::strip(model, cloth_sim::mesh::Diagonals::Forward, 300.0, 1.04).unwrap();
-        // A bar that is turned makes the state depend on the ratio of the stiffnesses.
+        // A rotated bar makes the state depend on the ratio of the stiffnesses.
         sample.place(|p| p + nalgebra::Vector3::new(0.4 * p.x * p.y, -0.1 * p.x * p.y, 0.0));
         let found = warm(&sample, &[Component::StretchWeft], 0.9);
         println!("{model}: {} steps, {} factorisations", found.iterations, found.factorisations);

@@ -1,4 +1,4 @@
-//! Patch test: a uniform state of an irregular mesh is an equilibrium, and is found.
+//! Patch test: a uniform state of an irregular mesh is an equilibrium, and the solver finds it.
 //!
 //! ```text
 //!   ┌──┬───┬─┐  affine map   goal    strains uniform, no force inside, wherever the nodes lie
@@ -12,7 +12,7 @@ use cloth_sim::material::{Component, Model};
 use cloth_sim::samples;
 use nalgebra::{Matrix3x2, Rotation3, Vector3};
 
-/// Stretched, sheared, and turned out of the plane.
+/// Stretched, sheared and rotated out of the plane.
 fn map() -> Matrix3x2<f64> {
     let flat = Matrix3x2::new(1.06, 0.05, 0.03, 1.02, 0.0, 0.0);
     Rotation3::new(Vector3::new(0.7, -1.2, 0.4)) * flat
@@ -41,7 +41,7 @@ fn strains_are_uniform_and_nothing_pulls_inside() {
         for &coordinate in cloth.unknown_coordinates() {
             assert!(gradient[coordinate].abs() <= 1e-12 * largest, "{model}: {:e}", gradient[coordinate]);
         }
-        // All that pulls is at the border, and it is in balance.
+        // All forces act on the border, and they are in balance.
         assert!(cloth.clip_forces(&gradient)[0].norm() <= 1e-12 * largest);
     }
 }

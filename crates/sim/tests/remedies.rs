@@ -1,4 +1,4 @@
-//! What a solve does beside plain Newton steps is counted.
+//! Numerical interventions of a solve are counted.
 //!
 //! ```text
 //!  strip pulled      nothing              picture frame, cold    matrices clamped and damped
@@ -21,7 +21,7 @@ fn solve(sample: &Sample, settings: &Settings) -> Equilibrium {
     Solver::new(&cloth).solve(&sample.curves, &mut sample.start.clone(), settings)
 }
 
-/// Pressed together along weft, flat and in balance.
+/// Compressed along weft, flat and balanced.
 fn pressed(model: Model) -> Sample {
     let map = Matrix3x2::new(0.98, 0.0, 0.0, 1.0, 0.0, 0.0);
     let mut sample = samples::patch(model, map).unwrap();
@@ -63,11 +63,11 @@ fn a_solve_that_newton_cannot_finish_counts() {
     sample.curves = samples::fabric(Model::Stvk, [0.0; 3]).unwrap();
     let falling = solve(&sample, &Settings::default());
     assert!(!falling.converged() && falling.remedies.levenberg_marquardt > 0, "{falling:?}");
-    // Nor does another membrane help one that has none.
+    // Another membrane does not help a cloth without stiffness either.
     assert_eq!(falling.remedies.continued, 1);
 }
 
-/// 1, ½, ¼ … 1/256 of the way: nine steps that are too long.
+/// 1, ½, ¼ … 1/256 of the motion: nine steps that are too long.
 #[test]
 fn load_steps_that_are_halved_count() {
     let (sample, _) = samples::strip(Model::Stvk, Diagonals::Forward, 300.0, 1.0).unwrap();
@@ -93,11 +93,11 @@ fn a_linearised_step_that_is_clamped_counts() {
         let mut motion = Motion::new(&cloth, &sample.curves, sample.start.clone(), &settings).unwrap();
         motion.step().remedies.clamped
     };
-    // The mass of a short step makes up for the pressure.
+    // The mass term of a short step outweighs the compression.
     assert_eq!((clamped(1.0), clamped(1e-6)), (1, 0));
 }
 
-/// A strip whose curves end at 5 %, held everywhere at an even stretch.
+/// A strip whose curves end at 5 %, held everywhere at uniform stretch.
 #[test]
 fn what_is_strained_beyond_a_curve_is_told() {
     for model in Model::ALL {

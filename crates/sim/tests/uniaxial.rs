@@ -1,4 +1,4 @@
-//! A strip pulled along weft: closed forms, on every split of the grid and on the bias.
+//! A strip pulled along weft: closed forms, for every split of the grid and on the bias.
 //!
 //! ```text
 //!  clip 0 ▌▔▔▔▔▔▔▔▔▐ clip 1 →    goal    the clip's force per width is the nominal stress
@@ -30,7 +30,7 @@ fn the_clips_pull_with_the_nominal_stress() {
                 let forces = solver.clip_forces();
                 assert!((forces[1].x - force).abs() < 1e-12 * force, "{model}: {} {force}", forces[1].x);
                 assert!((forces[0] + forces[1]).norm() < 1e-12 * force);
-                // Border rows carry half a cell's width.
+                // Border rows carry half the width of a cell.
                 let rows: Vec<f64> = sample
                     .held
                     .iter()
@@ -42,7 +42,7 @@ fn the_clips_pull_with_the_nominal_stress() {
                     let off = |row: &f64, share: f64| (row - share).abs() > 1e-12;
                     assert!(!off(first, 0.5) && !off(last, 0.5) && !inner.iter().any(|row| off(row, 1.0)));
                 }
-                // The same state from a disturbed one.
+                // The same state from a perturbed one.
                 sample.perturb(3e-4);
                 let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
                 let found = solver.solve(&sample.curves, &mut sample.start, &settings);
@@ -66,17 +66,17 @@ fn springs_are_classed_by_their_direction_and_share_the_cloth() {
             let area: f64 = of.map(|spring| spring.area).sum();
             assert!((area - SIDE * SIDE).abs() < 1e-15, "{component}: {area}");
         }
-        // The step between grid nodes that weft springs make, whichever sense they have.
+        // Grid step of a weft spring, in either direction.
         let weft = springs.iter().find(|spring| spring.component == Component::StretchWeft).unwrap();
         let place = |node: usize| [(node % 9) as isize, (node / 9) as isize];
         let ([c0, r0], [c1, r1]) = (place(weft.nodes[0]), place(weft.nodes[1]));
         assert!([c1 - c0, r1 - r0] == along_weft || [c0 - c1, r0 - r1] == along_weft);
-        // A problem without shear has no spring of it at all.
+        // A problem without shear has no shear springs.
         assert!(ring_one(&mesh, &all[..2]).unwrap().iter().all(|spring| spring.component.is_stretch()));
     }
 }
 
-/// Weft runs along the cells' diagonals; stretched along it, every model stores ½ k (strain)² an area.
+/// Weft runs along the cells' diagonals; stretched along it, every model stores ½ k (strain)² per area.
 #[test]
 fn on_the_bias_the_yarns_still_carry_their_own_stretch() {
     let angle = std::f64::consts::FRAC_PI_4;
@@ -99,7 +99,7 @@ fn on_the_bias_the_yarns_still_carry_their_own_stretch() {
 }
 
 /// At rest both triangle models have the same stiffness matrix. Springs agree in stretch; in shear their diagonals
-/// strain by half the angle, each over half the cloth, so that they store a quarter.
+/// strain by half the angle, each over half of the cloth, and store a quarter of the energy.
 #[test]
 fn models_agree_for_small_strains() {
     let matrix = |model| {

@@ -1,7 +1,7 @@
-//! What each part that a scene can leave out saves, and which error it causes to leave it out.
+//! Ablation: savings and error from leaving out a part of a scene or fit.
 //!
-//! A scene is balanced with the part and without it, all frames of a test at the fabric's own curves. What concerns the fit
-//! rather than a scene is read off the fits of the study.
+//! Each scene is solved with and without the part, in all frames of a test, with the fabric's own curves. Parts of the
+//! fit are evaluated from the fits of the study.
 
 mod ablated;
 mod of_fits;

@@ -1,6 +1,6 @@
-//! Equilibria of representative scenes on finer and finer meshes: what an error costs, and how fast it falls.
+//! Equilibria of representative scenes under mesh refinement: cost of an error, and order of convergence.
 //!
-//! A strip pulled in its plane and a flat picture frame are homogeneous, so every mesh meets them exactly. These are not:
+//! A planar strip and a flat picture frame are homogeneous, so every mesh solves them exactly. These scenes are not:
 //!
 //! ```text
 //! sagging strip    ▌‾‾╲__╱‾‾▐    pulled by 1 % between two bars, in space, under its weight
@@ -22,14 +22,14 @@ use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
 use cloth_sim::equilibrium::Tolerance;
 use cloth_sim::material::{Component, Model};
 
-/// Runs that take less than this, s, are repeated, and the fastest counts.
+/// Runs shorter than this, s, are repeated, and the fastest counts.
 const SHORT: f64 = 0.05;
 const REPEATS: usize = 3;
 
-/// Most iterations of one minimisation: far more than any of these needs that ends.
+/// Maximum iterations of one minimisation: far more than any convergent one needs here.
 const ITERATIONS: usize = 100;
 
-/// The tolerances that are tried beside the usual one.
+/// Tolerances tried besides the default one.
 const TOLERANCES: [Tolerance; 5] = [
     Tolerance::Relative(1e-2),
     Tolerance::Relative(1e-4),
@@ -38,10 +38,10 @@ const TOLERANCES: [Tolerance; 5] = [
     Tolerance::Absolute(1e-5),
 ];
 
-/// All equilibria of a study.
+/// All equilibrium runs of a study.
 ///
 /// # Errors
-/// A scene that the rig cannot make; a reference mesh that no scene can be laid on.
+/// A scene that the rig cannot build; a reference mesh on which a scene cannot be placed.
 pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progress) -> Result<Vec<Run>> {
     let reference = Reference { model: fabric.model, curves: fabric.curves()? };
     let mut runs = Vec::new();
@@ -60,13 +60,14 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
     Ok(runs)
 }
 
-/// Springs do not resist the first bend: pressed together as in a picture frame, their sheet has no shape to converge to.
+/// True if a scene suits a model. Springs do not resist the first bend: compressed as in a picture frame, their sheet
+/// has no limit shape to converge to.
 fn suits(scene: &Scene, model: Model) -> bool {
     !model.is_of_springs() || scene.set.sequences[0].kind != Kind::Shear
 }
 
 fn settings(model: Model, solver: Solver, nodes: usize, tolerance: Option<Tolerance>) -> Settings {
-    // The scene is the same for both: only how its equilibrium is found differs.
+    // Both use the same scene; only the solver differs.
     let equilibrium = solver.equilibrium();
     let mut settings = Settings { model, nodes: Some([nodes; 2]), equilibrium, ..Settings::default() };
     settings.equilibrium.max_iterations = ITERATIONS;
@@ -74,7 +75,7 @@ fn settings(model: Model, solver: Solver, nodes: usize, tolerance: Option<Tolera
     settings
 }
 
-/// The scenes, each with one frame.
+/// Scenes with one frame each.
 fn scenes(fabric: &KnownFabric, extent: &Extent) -> Result<[Scene; 4]> {
     let with = |plan: Plan, components: &[Component]| Plan { components: components.to_vec(), ..plan };
     let mut gentle = fabric.clone();
@@ -105,7 +106,7 @@ fn scenes(fabric: &KnownFabric, extent: &Extent) -> Result<[Scene; 4]> {
     ])
 }
 
-/// One scene and model, from coarse to fine.
+/// One scene and model, on a sequence of refined meshes.
 struct Ladder<'a> {
     scene: &'a Scene,
     reference: &'a Reference,
@@ -133,7 +134,7 @@ impl Ladder<'_> {
         Ok(runs)
     }
 
-    /// The mesh that all are compared with: it has an order, and no error.
+    /// The reference mesh: it has an order of convergence, but no error.
     fn finest(&self, extent: &Extent, mut shapes: Vec<Option<Vec<f64>>>) -> Run {
         let mut run =
             Run::new(Part::Equilibrium, &self.scene.name, self.model, Solver::Default, extent.finest);
@@ -148,7 +149,7 @@ impl Ladder<'_> {
     fn tolerances(&self, extent: &Extent) -> Result<Vec<Run>> {
         let solvers = Solver::ALL.into_iter();
         let pairs = solvers.flat_map(|solver| TOLERANCES.map(|tolerance| (solver, tolerance)));
-        // What was run on all meshes is not run again.
+        // The default tolerance has already run on all meshes.
         let new = pairs.filter(|(solver, tolerance)| *tolerance != solver.equilibrium().tolerance);
         let run = |(solver, tolerance)| {
             self.run(solver, extent.tolerances_on, Some(tolerance), extent.meshes[0]).map(|(run, _)| run)
@@ -187,13 +188,13 @@ impl Ladder<'_> {
     }
 }
 
-/// The order of convergence that the last three meshes show, each with twice the cells of the one before: the change from
-/// the first to the second over that from the second to the third is 2 to the order. It needs no exact answer.
+/// Order of convergence from the last three meshes, each with twice the cells of the previous one: log₂ of the ratio of
+/// successive changes. Needs no exact solution.
 fn order(shapes: &[Option<Vec<f64>>]) -> Option<f64> {
     let [.., Some(first), Some(second), Some(third)] = shapes else { return None };
     let [before, after] =
         [root_mean_square_distance(first, second), root_mean_square_distance(second, third)];
-    // Changes of rounding have no order.
+    // Changes at rounding level have no order.
     let size = third.iter().fold(0.0f64, |largest, place| largest.max(place.abs()));
     (after > 1e-10 * size).then(|| (before / after).log2()).filter(|order| order.is_finite())
 }

@@ -1,60 +1,60 @@
-//! How much a study runs.
+//! Extent of a study.
 
 use cloth_sim::material::Model;
 
 /// A topic of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topic {
-    /// Equilibria of scenes on finer and finer meshes.
+    /// Equilibria of scenes on refined meshes.
     Equilibria,
-    /// Fits of the set.
+    /// Fits of the measurement set.
     Fits,
     /// Curve error against noise.
     Noise,
-    /// What parts save and cost; those of fits only with fits.
+    /// Savings and errors of parts; parts of fits only together with fits.
     Ablation,
 }
 
 impl Topic {
-    /// All of them.
+    /// All topics.
     pub const ALL: [Self; 4] = [Self::Equilibria, Self::Fits, Self::Noise, Self::Ablation];
 }
 
-/// How much a study runs. `--quick` and the full study are two values of it.
+/// Extent of a study. `--quick` and the full study are two values of this type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extent {
-    /// What is run at all.
+    /// Topics to run.
     pub topics: Vec<Topic>,
-    /// The models of equilibria and fits.
+    /// Models for equilibria and fits.
     pub models: Vec<Model>,
-    /// Nodes a side of the meshes of equilibria, from coarse to fine, each with twice the cells of the one before.
+    /// Nodes per side of the meshes for equilibria, from coarse to fine, each with twice the cells of the previous one.
     pub meshes: Vec<usize>,
-    /// Nodes a side of the mesh that they are compared with.
+    /// Nodes per side of the reference mesh for equilibria.
     pub finest: usize,
-    /// Nodes a side where tolerances are tried; one of the meshes.
+    /// Nodes per side of the mesh on which tolerances are varied; one of `meshes`.
     pub tolerances_on: usize,
-    /// Nodes a side of fits.
+    /// Nodes per side of the grids for fits.
     pub fit_nodes: Vec<usize>,
-    /// Those of them on which the published method is run too: it takes ten times as long or more.
+    /// Subset of these on which the published method runs too, at ten or more times the cost.
     pub published_nodes: Vec<usize>,
-    /// Nodes a side of the fits with fewer control points or frames, and of the scenes that leave parts out.
+    /// Nodes per side of the fits with fewer control points or frames, and of the ablation scenes.
     pub usual_nodes: usize,
-    /// Most control points that are tried beside five.
+    /// Maximum numbers of control points tried besides five.
     pub points: Vec<usize>,
-    /// Every which frame is used, beside every one.
+    /// Frame steps n (every n-th frame) tried besides all frames.
     pub every_frames: Vec<usize>,
     /// Multiples of the instruments' noise.
     pub noises: Vec<f64>,
-    /// Seeds of each.
+    /// Seeds per noise level.
     pub seeds: u64,
-    /// Nodes a side of the fits to noise.
+    /// Nodes per side of the fits to noise.
     pub noise_nodes: usize,
-    /// Nodes a side of the finer mesh that noise is added to, and of the set that is measured if none is given.
+    /// Nodes per side of the finer mesh for noise, and of the built-in measurement set.
     pub rig_nodes: usize,
 }
 
 impl Extent {
-    /// About a minute.
+    /// Takes about a minute.
     pub fn quick() -> Self {
         Self {
             topics: Topic::ALL.to_vec(),
@@ -79,7 +79,7 @@ impl Extent {
         self.topics.contains(&topic)
     }
 
-    /// About ten minutes.
+    /// Takes about ten minutes.
     pub fn full() -> Self {
         Self {
             meshes: vec![13, 25, 49, 97],

@@ -1,6 +1,6 @@
-//! The fabrics that come with the program.
+//! Built-in fabrics.
 
-/// Their names and files.
+/// Names and files.
 const KNOWN: [(&str, &str); 4] = [
     ("cotton-denim", include_str!("../../../fixtures/fabrics/cotton-denim.toml")),
     ("cotton-satin", include_str!("../../../fixtures/fabrics/cotton-satin.toml")),
@@ -8,12 +8,12 @@ const KNOWN: [(&str, &str); 4] = [
     ("wool-cotton", include_str!("../../../fixtures/fabrics/wool-cotton.toml")),
 ];
 
-/// The names of all of them.
+/// Names of all built-in fabrics.
 pub fn names() -> Vec<&'static str> {
     KNOWN.iter().map(|(name, _)| *name).collect()
 }
 
-/// The file of one of them by its name.
+/// File of a built-in fabric by name.
 pub fn known(name: &str) -> Option<&'static str> {
     KNOWN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

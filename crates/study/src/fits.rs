@@ -1,4 +1,4 @@
-//! Fits of the set: nodes, models and solvers each with each; control points and frames one at a time.
+//! Fits of the measurement set: all combinations of nodes, models and solvers; control points and frames one at a time.
 
 use crate::extent::Extent;
 use crate::mean::root_mean_square;
@@ -16,22 +16,22 @@ use cloth_fit::stage::report::{SequenceReport, StageReport};
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
 
-/// Most control points of a usual fit.
+/// Maximum number of control points in a usual fit.
 const POINTS: usize = 5;
 
-/// What one fit is of.
+/// Parameters of one fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Trial {
     pub(crate) model: Model,
     pub(crate) solver: Solver,
     pub(crate) nodes: usize,
     pub(crate) points: usize,
-    /// Every which frame is used.
+    /// Uses every n-th frame.
     pub(crate) every: usize,
 }
 
 impl Trial {
-    /// StVK by the program's own settings.
+    /// StVK with the default settings.
     pub(crate) fn usual(nodes: usize) -> Self {
         Self { model: Model::Stvk, solver: Solver::Default, nodes, points: POINTS, every: 1 }
     }
@@ -47,17 +47,17 @@ impl Trial {
     }
 }
 
-/// A fit, and its rows: the whole first, then its stages.
+/// A fit and its rows: the whole fit first, then its stages.
 pub(crate) struct Fitted {
     pub(crate) trial: Trial,
     pub(crate) rows: Vec<Run>,
     pub(crate) report: Option<FitReport>,
 }
 
-/// What curve errors are measured against, and that in words: the truth, or the default fit on the finest grid.
+/// Reference for curve errors, and its description: the known curves, or the default fit on the finest grid.
 ///
 /// # Errors
-/// A set that cannot be fitted; curves of a fabric that are none.
+/// A set that cannot be fitted; invalid curves of a fabric.
 pub(crate) fn reference(
     subject: &Subject,
     extent: &Extent,
@@ -69,7 +69,7 @@ pub(crate) fn reference(
         return Ok((reference, format!("the known curves of {}", fabric.name)));
     }
     let nodes = extent.fit_nodes.iter().copied().max().unwrap_or(extent.usual_nodes);
-    progress.note(&format!("the fit that others are compared with: {nodes}x{nodes}"));
+    progress.note(&format!("reference fit: {nodes}x{nodes}"));
     let settings = Trial::usual(nodes).settings();
     let known = Knowledge::default();
     let report = incremental::fit(&subject.set, &Stage::ALL, &known, &settings, &mut Watch::default())?;
@@ -77,7 +77,7 @@ pub(crate) fn reference(
     Ok((reference, format!("the curves of the default fit on {nodes}x{nodes} nodes")))
 }
 
-/// All fits of a study.
+/// All fit runs of a study.
 pub(crate) fn runs(
     subject: &Subject,
     reference: &Reference,
@@ -101,9 +101,9 @@ pub(crate) fn runs(
     trials.iter().map(|trial| fit(&subject.set, reference, *trial, &trial.settings(), progress)).collect()
 }
 
-/// One fit.
+/// Runs one fit.
 ///
-/// * `settings` — those of the trial, or some of them changed
+/// * `settings` — settings of the trial, possibly modified
 pub(crate) fn fit(
     set: &MeasurementSet,
     reference: &Reference,
@@ -140,7 +140,7 @@ pub(crate) fn fit(
     Fitted { trial, rows, report: Some(report) }
 }
 
-/// One stage of a fit.
+/// Row of one stage of a fit.
 fn row_of(stage: &StageReport, whole: &Run, reference: &Reference) -> Run {
     let pass = if stage.pass > 1 { " again" } else { "" };
     let sequences: Vec<&SequenceReport> = stage.sequences.iter().collect();
@@ -163,7 +163,7 @@ fn row_of(stage: &StageReport, whole: &Run, reference: &Reference) -> Run {
     }
 }
 
-/// Failed if a stage did not converge, or a curve is missing that there is something to compare with.
+/// Failed if a stage did not converge, or if a curve of the reference is missing.
 fn ending(report: &FitReport, reference: &Reference) -> Ending {
     let lacking = |component: &Component| {
         reference.curves.get(*component).is_some()
@@ -183,8 +183,8 @@ fn ending(report: &FitReport, reference: &Reference) -> Ending {
     }
 }
 
-/// Force residual over the largest force and position residual in mm, each a root mean square over the sequences that it is
-/// about.
+/// Force residual over the largest force, and position residual in mm; each is a root mean square over the sequences to
+/// which it applies.
 fn residuals(sequences: &[&SequenceReport]) -> (Option<f64>, Option<f64>) {
     let pulled = sequences.iter().filter(|sequence| sequence.force_largest > 0.0);
     let forces = pulled.filter_map(|sequence| Some(sequence.force_rms? / sequence.force_largest));
@@ -193,11 +193,11 @@ fn residuals(sequences: &[&SequenceReport]) -> (Option<f64>, Option<f64>) {
     (root_mean_square(forces), root_mean_square(positions))
 }
 
-/// A set with every so-manieth frame, the last of every sequence that is only loaded among them.
+/// A set with every n-th frame, including the last frame of every load-only sequence.
 fn thinned(set: &MeasurementSet, every: usize) -> MeasurementSet {
     let mut set = set.clone();
     for sequence in &mut set.sequences {
-        // Counted from the middle of a loading and unloading, which is the largest, or from the end.
+        // Counts from the middle of a loading–unloading cycle, where the load is largest, or from the end.
         let anchor =
             if sequence.table.is_some() { sequence.frames.len() - 1 } else { sequence.frames.len() / 2 };
         let frames = std::mem::take(&mut sequence.frames).into_iter().enumerate();

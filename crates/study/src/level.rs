@@ -1,19 +1,19 @@
-//! The fits to one noise, averaged over their seeds.
+//! Fits at one noise level, averaged over their seeds.
 
 use crate::mean::root_mean_square;
 use crate::run::{Part, Run};
 use crate::study::Study;
 
-/// All seeds of one noise together.
+/// All seeds of one noise level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
     /// Curve and mesh.
     pub test: String,
     /// Multiple of the instruments' noise.
     pub noise: f64,
-    /// Seeds whose fits converged.
+    /// Number of seeds with converged fits.
     pub seeds: usize,
-    /// Seeds whose fits did not.
+    /// Number of seeds whose fits did not converge.
     pub failed: usize,
     /// Root mean square of their curve errors.
     pub error: f64,
@@ -21,7 +21,7 @@ pub struct Level {
     pub floor: Option<f64>,
 }
 
-/// The fits to noise, averaged over seeds.
+/// Averages the fits to noise over their seeds.
 pub fn levels(study: &Study) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
     let runs: Vec<&Run> = study.part(Part::Noise).collect();

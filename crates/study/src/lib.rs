@@ -1,29 +1,29 @@
-//! Error against run time, and what each part that a scene can leave out saves and costs.
+//! Studies of error against run time, and of the savings and errors from leaving out parts of a scene.
 //!
 //! ```text
-//! known fabric ──▶ scenes on finer and finer meshes ──▶ error and cost of an equilibrium      [equilibria]
+//! known fabric ──▶ scenes on refined meshes ──▶ error and cost of an equilibrium               [equilibria]
 //! measured set ──▶ fits: nodes, models, solvers, points, frames ──▶ error and cost of a fit   [fits]
-//! known fabric ──▶ more and more noise ──▶ error of a curve beside the least there can be     [noise]
-//!              ──▶ scenes with and without a part ──▶ what it saves, what it costs            [ablation]
+//! known fabric ──▶ increasing noise ──▶ error of a curve, and its Cramér–Rao bound            [noise]
+//!              ──▶ scenes with and without a part ──▶ savings and error                       [ablation]
 //! ```
 //!
-//! Runs are timed one at a time; within a run frames are solved in parallel, as in a fit. A run that fails is a row that
-//! says so.
+//! Runs are timed one at a time; within a run, frames are solved in parallel, as in a fit. A failed run is recorded as
+//! a row.
 //!
 //! | Module | Role |
 //! |---|---|
-//! | [`subject`], [`fabrics`] | what is studied: a measurement set, and the truth behind it where that is known |
-//! | [`extent`] | how much is run |
-//! | [`study`] | all of it, from subject to rows |
-//! | [`run`], [`spent`], [`ablation`] | a row: a run with its error and its cost; a part with what it saves |
-//! | [`solver`] | the program's own method, and the published one |
-//! | [`level`], [`pareto`] | what rows come to: averages over seeds, the runs that no other beats |
-//! | [`table`] | the rows as files |
-//! | [`progress`] | who is told how far a study is |
+//! | [`subject`], [`fabrics`] | the subject: a measurement set, and the known fabric if there is one |
+//! | [`extent`] | the extent of a study |
+//! | [`study`] | the whole study, from subject to rows |
+//! | [`run`], [`spent`], [`ablation`] | a row: a run with its error and cost; a part with its savings |
+//! | [`solver`] | the default method, and the published one |
+//! | [`level`], [`pareto`] | summaries: averages over seeds, the Pareto front of error and time |
+//! | [`table`] | writes the rows to files |
+//! | [`progress`] | receives the progress of a study |
 //!
 //! # Example
 //!
-//! The studied set is measured on the virtual rig, where none is given:
+//! Without a measurement set, the virtual rig measures one:
 //!
 //! ```
 //! use cloth_study::extent::Extent;

@@ -1,13 +1,13 @@
-//! How near a fit comes to the least error that its measurements allow.
+//! Error of a fit compared with the least error that its measurements allow.
 //!
 //! ```text
-//! own mesh      curve that the fit can represent ──▶ its own simulation ──▶ + noise ──▶ fit     only noise errs
-//! finer mesh    the fabric's curve ──▶ the rig's simulation             ──▶ + noise ──▶ fit     and mesh and control points
+//! own mesh      curve that the fit can represent ──▶ its own simulation ──▶ + noise ──▶ fit     error of noise only
+//! finer mesh    the fabric's curve ──▶ the rig's simulation             ──▶ + noise ──▶ fit     plus mesh and spline
 //! floor         root mean square over the range of √(wᵀ (JᵀJ/σ²)⁻¹ w), w = ∂stress/∂k           Cramér and Rao
 //! ```
 //!
-//! The floor is that of the noise alone, at the true curve. All control points are in use, so that bias and variance are
-//! not mixed.
+//! The floor accounts for noise alone, at the true curve. All control points are in use, so bias and variance are not
+//! mixed.
 
 use crate::extent::Extent;
 use crate::own_mesh;
@@ -26,35 +26,35 @@ use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{self, Plan, Settings, Watch, bend, stretch};
 use cloth_sim::material::{Component, Curves, Model};
 
-/// Standard deviations from the middle of a 95 % band to its edge.
+/// Standard deviations from the centre of a 95 % band to its edge.
 const BAND: f64 = 1.959_963_985;
 
-/// The share that more control points must gain: less than none, so that all are used.
+/// Required gain of more control points, as a share: negative, so that all are used.
 const ALWAYS: f64 = -1e6;
 
-/// One stage of a fit, its scene, and what it compares its curve with.
+/// One stage of a fit, with its scene and the reference for its curve.
 struct Stage {
     plan: Plan,
     scene: Scene,
     settings: Settings,
-    /// The other curves.
+    /// The other, known curves.
     known: Knowledge,
     reference: Reference,
     largest_noise: f64,
 }
 
-/// Ten times the noise of a vertex is 0.75 mm: above that a stiff sheet that hardly sags has no shape left.
+/// Ten times the vertex noise is 0.75 mm; above that, a stiff sheet with little sag has no recognisable shape.
 const LARGEST_IN_BENDING: f64 = 10.0;
 
-/// All fits to noise of a study: averages are left to who reads them.
+/// All noise runs of a study, not averaged.
 ///
 /// # Errors
-/// A scene that the rig cannot make, or a stage that fails without noise.
+/// A scene that the rig cannot build, or a stage that fails without noise.
 pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progress) -> Result<Vec<Run>> {
     let mut runs = Vec::new();
     for (component, points) in [(Component::StretchWeft, 5), (Component::BendWeft, 2)] {
         let mut stage = Stage::new(fabric, component, points, extent)?;
-        // What the fit makes of the fabric is a curve that it can represent.
+        // The fit of the noise-free fabric is a curve that the fit can represent.
         progress.note(&format!("{component}, without noise"));
         let own = stage.fit(&stage.scene.set)?;
         let fine = stage.scene.set.clone();
@@ -70,8 +70,8 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
     Ok(runs)
 }
 
-/// The Cramér–Rao floor at the instruments' noise, over the largest stress of the range, from a fit to exact data that is
-/// told of that noise: its bands then are of noise alone.
+/// Cramér–Rao floor at the instruments' noise, over the largest stress of the range. It comes from a fit to exact data
+/// with that noise declared, so that the confidence bands contain noise only.
 fn floor(stage: &StageReport) -> Option<f64> {
     let samples = &stage.curve.samples;
     let largest = samples.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
@@ -91,7 +91,7 @@ impl Stage {
         };
         let rig = Rig {
             nodes: [extent.rig_nodes; 2],
-            // Shapes are seen at the fit's own nodes.
+            // Shapes are measured at the fit's own nodes.
             measured: [nodes; 2],
             frames: 6,
             ..Rig::default()
@@ -126,7 +126,7 @@ impl Stage {
         })
     }
 
-    /// Every noise and seed on one exact set.
+    /// Runs every noise level and seed on one exact set.
     fn series(
         &self,
         mesh: &str,
@@ -137,7 +137,7 @@ impl Stage {
         progress: &dyn Progress,
     ) -> Vec<Run> {
         let name = format!("{component}, {mesh}");
-        // Every noise has seeds of its own: the same draws, only larger, would err alike.
+        // Every noise level has its own seeds: the same draws, merely scaled, would have the same relative error.
         let levels = extent.noises.iter().filter(|&&noise| noise <= self.largest_noise).enumerate();
         let pairs = levels.flat_map(|(level, &noise)| {
             (1..=extent.seeds).map(move |seed| (noise, 1000 * level as u64 + seed))

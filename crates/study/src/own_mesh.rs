@@ -1,4 +1,4 @@
-//! Tests as a fit itself simulates them: under known curves, on the fit's own mesh, before noise is added.
+//! Tests simulated by the fit's own model: known curves on the fit's own mesh, before noise is added.
 
 use crate::physical::Reference;
 use crate::scene::{Balanced, BalancedFrame, Scene};
@@ -7,10 +7,10 @@ use cloth_data::frame::{Cord, MeasurementSet};
 use cloth_fit::stage::Settings;
 use nalgebra::{Point3, Vector3};
 
-/// The scene's set, measured on the fit's own mesh. Shapes need a measured mesh with the simulation's nodes.
+/// Measures the scene's set on the fit's own mesh. Shapes need a measured mesh with the simulation's nodes.
 ///
 /// # Errors
-/// As [`Scene::balance`].
+/// Those of [`Scene::balance`].
 pub(crate) fn simulated(scene: &Scene, reference: &Reference, settings: &Settings) -> Result<MeasurementSet> {
     let balanced = scene.balance(reference, settings)?;
     let mut set = scene.set.clone();
@@ -29,7 +29,7 @@ pub(crate) fn simulated(scene: &Scene, reference: &Reference, settings: &Setting
     Ok(set)
 }
 
-/// One cord a clip: its force is what the cloth pulls with, less the clip's weight.
+/// One cord per clip; its force is the pull of the cloth minus the clip's weight.
 fn cords(balanced: &Balanced, frame: &BalancedFrame) -> Vec<Cord> {
     let back = balanced.replica.specimen.frame.rotation.inverse();
     let mut cords: Vec<Cord> = Vec::new();
@@ -44,7 +44,7 @@ fn cords(balanced: &Balanced, frame: &BalancedFrame) -> Vec<Cord> {
     cords
 }
 
-/// Where every node is and where it was at rest, in world coordinates, m.
+/// Present and rest position of every node, in world coordinates, m.
 fn places(balanced: &Balanced, frame: &BalancedFrame) -> Vec<[Vector3<f64>; 2]> {
     let specimen = &balanced.replica.specimen;
     let back = specimen.frame.inverse();

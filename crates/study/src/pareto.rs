@@ -1,9 +1,9 @@
-//! Which runs no other beats in both error and time.
+//! Pareto front of runs in error and time.
 
-/// Errors within a hundredth of each other are equal: so much is chance.
+/// Errors within one per cent of each other count as equal, since such differences are random.
 const NOTABLE: f64 = 0.99;
 
-/// The points (time, error) that no other is at least as good as in both, by time; of equal ones the first.
+/// Points (time, error) that no other point matches or beats in both, sorted by time; the first of equal ones.
 pub fn front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));

@@ -1,4 +1,4 @@
-//! Curves in physical terms. The models' strains differ, so what is compared is what a laboratory would measure.
+//! Curves in physical measures. The models' strains differ, so curves are compared by what a laboratory would measure.
 //!
 //! ```text
 //! stretch   P(λ − 1)   force per rest width of a strip
@@ -6,7 +6,7 @@
 //! bending   M(κ)       moment per width of a rolled sheet
 //! ```
 //!
-//! See [`StrainMeasure`](cloth_sim::strain_measure::StrainMeasure); places are its physical measures.
+//! See [`StrainMeasure`](cloth_sim::strain_measure::StrainMeasure); a place is a value of its physical measure.
 
 use cloth_fit::stage::report::StageReport;
 use cloth_sim::bending::{Bending, Rolled};
@@ -16,33 +16,33 @@ use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::mesh::Mesh;
 use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 
-/// Curves over the strains of a model with triangles, against which others are measured.
+/// Reference curves over the strains of a triangle model.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Reference {
-    /// Whose strains: not those of springs.
+    /// Model that defines the strains; not springs.
     pub(crate) model: Model,
     /// The curves.
     pub(crate) curves: Curves,
 }
 
 impl Reference {
-    /// Force or moment per length at an extension, shear angle or curvature, N/m or N; `None` without a curve.
+    /// Force or moment per length at an extension, shear angle or curvature, N/m or N; `None` if there is no curve.
     pub(crate) fn load(&self, component: Component, place: f64) -> Option<f64> {
         let curve = self.curves.get(component)?;
         self.model.strain_measure(component).load(place, |strain| curve.stress(strain))
     }
 
-    /// Root mean square distance of a stage's curve over the range that it has seen, over the largest load there; `None`
-    /// where there is nothing to compare it with.
+    /// Root mean square distance of a stage's curve over its observed range, over the largest load there; `None`
+    /// without a reference curve.
     pub(crate) fn distance(&self, stage: &StageReport) -> Option<f64> {
         distance(&loads(stage), |place| self.load(stage.components[0], place))
     }
 
-    /// The same curves over another model's strains. Bending of springs has one stiffness, which gives the moment at half
-    /// of the curve's range: a curve that gave all of them would fall as 1/κ².
+    /// The same curves in another model's strains. A bending curve becomes a single stiffness for springs, which
+    /// matches the moment at half of the curve's range; matching all moments would need a curve that falls as 1/κ².
     ///
     /// # Errors
-    /// Control points that make no curve.
+    /// Control points that do not form a valid curve.
     pub(crate) fn told_in(&self, model: Model, mesh: &Mesh) -> Result<Curves> {
         let known = self.curves.components().filter_map(|c| Some((c, self.curves.get(c)?)));
         known
@@ -83,7 +83,7 @@ impl Reference {
     }
 }
 
-/// Places and loads of a fitted curve, over the range that was seen.
+/// Places and loads of a fitted curve over its observed range.
 pub(crate) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
     let component = stage.components[0];
     let samples = stage.curve.samples.iter().filter(|sample| sample.strain >= 0.0);
@@ -99,7 +99,7 @@ pub(crate) fn loads(stage: &StageReport) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Root mean square distance of loads from others at the same places, over the largest of these.
+/// Root mean square distance of loads from a reference at the same places, over the reference's largest load.
 pub(crate) fn distance(loads: &[[f64; 2]], reference: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let (mut sum, mut largest) = (0.0, 0.0f64);
     for &[place, load] in loads {
@@ -110,13 +110,13 @@ pub(crate) fn distance(loads: &[[f64; 2]], reference: impl Fn(f64) -> Option<f64
     (largest > 0.0).then(|| (sum / loads.len() as f64).sqrt() / largest)
 }
 
-/// How far one stage's curve is from another's of the same component and model.
+/// Distance of one stage's curve from another's, for the same component and model.
 pub(crate) fn between(stage: &StageReport, other: &StageReport) -> Option<f64> {
     let others = loads(other);
     distance(&loads(stage), |place| Some(interpolated(&others, place)))
 }
 
-/// On the line through the two neighbours of a place; beyond the ends on the outermost.
+/// Interpolates linearly between the neighbours of a place; extrapolates from the outermost two beyond the ends.
 fn interpolated(loads: &[[f64; 2]], place: f64) -> f64 {
     let after = loads.partition_point(|[at, _]| *at < place).clamp(1, loads.len() - 1);
     let [[from, low], [to, high]] = [loads[after - 1], loads[after]];

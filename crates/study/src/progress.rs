@@ -1,13 +1,13 @@
-//! Who is told how far a study is.
+//! Progress of a study.
 
 use cloth_fit::equilibria::Meter;
 use std::sync::Arc;
 
-/// Who is told how far a study is.
+/// Receives the progress of a study.
 pub trait Progress {
-    /// Is told what is done now.
+    /// Receives a description of the current task.
     fn note(&self, what: &str);
 
-    /// What the study counts equilibria with.
+    /// The meter that counts equilibria.
     fn meter(&self) -> Arc<Meter>;
 }

@@ -1,11 +1,11 @@
-//! One run: what was tried, how far off it was, and what it has cost.
+//! One run: its parameters, error and cost.
 
 use crate::solver::Solver;
 use crate::spent::Spent;
 use cloth_sim::equilibrium::Tolerance;
 use cloth_sim::material::Model;
 
-/// What a run belongs to.
+/// Kind of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// One equilibrium of a scene.
@@ -14,7 +14,7 @@ pub enum Part {
     Fit,
     /// One stage of a fit.
     Stage,
-    /// A stage fitted to data with a known amount of noise.
+    /// A stage fitted to data with known noise.
     Noise,
 }
 
@@ -29,14 +29,14 @@ impl std::fmt::Display for Part {
     }
 }
 
-/// How a run ended.
+/// Ending of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ending {
-    /// As it should.
+    /// Converged.
     Converged,
-    /// As it should, but an unstable state was met and left: another shape may be as good.
+    /// Converged, but an unstable state was met and left: another shape may be equally valid.
     SeveralEquilibria,
-    /// Otherwise; why.
+    /// Failed, with the reason.
     Failed(String),
 }
 
@@ -50,47 +50,47 @@ impl std::fmt::Display for Ending {
     }
 }
 
-/// One row of `study.csv`. Errors are `None` where there is nothing to compare.
+/// One row of `study.csv`. Errors are `None` if there is no reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// What it belongs to.
+    /// Kind of the run.
     pub part: Part,
-    /// The scene; or the stage of a fit, `all` for the whole.
+    /// Scene, or stage of a fit; `all` for the whole fit.
     pub test: String,
     /// The cloth model.
     pub model: Model,
-    /// How it was solved.
+    /// Solver.
     pub solver: Solver,
-    /// Nodes a side.
+    /// Nodes per side.
     pub nodes: usize,
-    /// Most control points of a curve; `None` where nothing was fitted.
+    /// Maximum number of control points of a curve; `None` if nothing was fitted.
     pub points: Option<usize>,
-    /// Frames that were simulated or fitted.
+    /// Number of frames simulated or fitted.
     pub frames: usize,
-    /// Noise, as a multiple of the instruments'; `None` if there is none, or that of the set.
+    /// Noise, as a multiple of the instruments'; `None` without noise, or with that of the set.
     pub noise: Option<f64>,
-    /// When an equilibrium counted as found.
+    /// Criterion for equilibrium.
     pub tolerance: Tolerance,
     /// Seed of the noise.
     pub seed: Option<u64>,
     /// Largest error of a clip force (fits: root mean square residual), over the largest force.
     pub error_force: Option<f64>,
-    /// Root mean square error of the nodes' places (fits: residual), mm.
+    /// Root mean square error of the nodal positions (fits: residual), mm.
     pub error_position_mm: Option<f64>,
-    /// Root mean square error of the stress or moment over the visited range, over the largest there.
+    /// Root mean square error of stress or moment over the visited range, over the largest value there.
     pub error_curve: Option<f64>,
-    /// The least that error can be with this noise, as the Cramér–Rao bound has it.
+    /// Cramér–Rao bound: the least value of `error_curve` with this noise.
     pub floor: Option<f64>,
-    /// What it has cost.
+    /// Cost of the run.
     pub spent: Spent,
-    /// Order of convergence in the mesh size, of the places, from this mesh and the two before it.
+    /// Order of convergence of the positions in the mesh size, from this mesh and the two before it.
     pub order: Option<f64>,
-    /// How it ended.
+    /// Ending of the run.
     pub ending: Ending,
 }
 
 impl Run {
-    /// A run that has cost nothing yet.
+    /// A run without cost yet.
     pub(crate) fn new(part: Part, test: &str, model: Model, solver: Solver, nodes: usize) -> Self {
         Self {
             part,
@@ -113,7 +113,7 @@ impl Run {
         }
     }
 
-    /// It came to nothing, or not to its end.
+    /// True if the run failed.
     pub fn failed(&self) -> bool {
         matches!(self.ending, Ending::Failed(_))
     }

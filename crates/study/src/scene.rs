@@ -1,4 +1,4 @@
-//! A scene: one test of a known fabric, simulated as a fit simulates it, with or without some of its parts.
+//! A scene: one test of a known fabric, simulated as in a fit, with or without some parts.
 
 use crate::memory;
 use crate::physical::Reference;
@@ -16,26 +16,26 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Standard gravity across the sheet, m/s².
+/// Gravity across the sheet, m/s².
 pub(crate) const WEIGHT: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
 
-/// So little gravity that nothing feels it, but the replica moves in space, m/s².
+/// Gravity too small to have an effect, but the replica moves in space, m/s².
 pub(crate) const IN_SPACE: Vector3<f64> = Vector3::new(0.0, 0.0, -1e-9);
 
-/// A test and the parts that take part in it.
+/// A test and the parts included in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    /// What it is called.
+    /// Name of the scene.
     pub(crate) name: String,
-    /// The set that it is the only sequence of: how the sheet is held in every frame.
+    /// A set with this single sequence: how the sheet is held in every frame.
     pub(crate) set: MeasurementSet,
-    /// Which components store energy, and whether the sheet stays in its plane.
+    /// Components that store energy, and whether motion is planar.
     pub(crate) plan: Plan,
 }
 
-/// A scene's frames in equilibrium, each solved once from where it starts, without what a fit falls back on.
+/// Frames of a scene in equilibrium, each solved once from its start, without a fit's fallbacks.
 pub(crate) struct Balanced {
-    /// The frames that have an equilibrium.
+    /// The frames that reached equilibrium.
     pub(crate) frames: Vec<BalancedFrame>,
     pub(crate) replica: Replica,
     pub(crate) spent: Spent,
@@ -44,21 +44,21 @@ pub(crate) struct Balanced {
 
 /// One frame in equilibrium.
 pub(crate) struct BalancedFrame {
-    /// Its place among the replica's frames.
+    /// Index among the replica's frames.
     pub(crate) place: usize,
     /// Simulated forces along the measured components, N.
     pub(crate) forces: Vec<f64>,
-    /// Places of the nodes, 3 stacked coordinates a node, m.
+    /// Positions of the nodes, 3 stacked coordinates per node, m.
     pub(crate) x: Vec<f64>,
 }
 
 impl Scene {
-    /// A test of the rig, without noise.
+    /// A test of the rig without noise.
     ///
-    /// * `plan` — what takes part, as in a stage of a fit
+    /// * `plan` — the parts included, as in a stage of a fit
     ///
     /// # Errors
-    /// As [`Rig::measure`].
+    /// Those of [`Rig::measure`].
     pub(crate) fn new(fabric: &KnownFabric, kind: Kind, rig: Rig, plan: Plan) -> Result<Self> {
         let rig = Rig { sequences: vec![kind], noise: false, ..rig };
         let mut plan = plan;
@@ -66,29 +66,29 @@ impl Scene {
         Ok(Self { name: kind.to_string(), set: rig.measure(fabric)?, plan })
     }
 
-    /// The same with another gravity, m/s².
+    /// The same scene with another gravity, m/s².
     pub(crate) fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
         self.set.sequences.iter_mut().for_each(|sequence| sequence.gravity = gravity);
         self
     }
 
-    /// The same without its measured shapes, so that it starts between its clips.
+    /// The same scene without measured shapes; it starts interpolated between its clips.
     pub(crate) fn without_shapes(mut self) -> Self {
         let frames = self.set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames);
         frames.for_each(|frame| frame.positions = None);
         self
     }
 
-    /// The same under another name.
+    /// The same scene under another name.
     pub(crate) fn called(mut self, name: &str) -> Self {
         self.name = name.into();
         self
     }
 
-    /// Brings all frames to equilibrium. Only the solving is timed.
+    /// Solves all frames. Only the solver is timed.
     ///
     /// # Errors
-    /// A replica that cannot be made.
+    /// A replica that cannot be built.
     pub(crate) fn balance(&self, reference: &Reference, settings: &Settings) -> Result<Balanced> {
         let mut plan = self.plan.clone();
         plan.components.retain(|&component| reference.curves.get(component).is_some());
@@ -123,7 +123,7 @@ impl Scene {
     }
 }
 
-/// At the measured shape where that has left its plane, else as the replica says.
+/// The measured shape if it leaves its plane, otherwise the replica's start.
 fn start(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
     let mut x = frame.start.clone();
     if let Some(observed) = frame.observed.as_ref().filter(|_| replica.is_buckled(frame)) {
@@ -149,7 +149,7 @@ fn ending(found: &[Equilibrium]) -> Ending {
 }
 
 impl Balanced {
-    /// Places of the nodes that a coarser square grid has too, all frames after one another, m.
+    /// Positions of the nodes shared with a coarser square grid, m, frame after frame.
     pub(crate) fn shared(&self, nodes: usize) -> Vec<f64> {
         let grid: &Grid = &self.replica.specimen.grid;
         let [right, up] = [grid.columns, grid.rows].map(|all| (all - 1) / (nodes - 1));
@@ -168,20 +168,19 @@ impl Balanced {
         self.replica.frames[frame.place].index
     }
 
-    /// The forces but those across the plane.
+    /// The forces without out-of-plane components.
     fn in_plane<'f>(&'f self, frame: &'f BalancedFrame) -> impl Iterator<Item = f64> + 'f {
         let components = self.replica.frames[frame.place].forces.iter();
         let inside = components.zip(&frame.forces).filter(|(component, _)| component.direction.z.abs() < 0.5);
         inside.map(|(_, force)| *force)
     }
 
-    /// Largest difference of a force over the largest force of the other, over the frames that both have; `None` without
-    /// forces.
+    /// Largest difference of a force over the largest force of `other`, over the frames in both; `None` without forces.
     pub(crate) fn force_error(&self, other: &Self) -> Option<f64> {
         let (mut apart, mut largest) = (0.0f64, 0.0f64);
         for frame in &other.frames {
             let own = self.frames.iter().find(|own| self.index(own) == other.index(frame));
-            // In the plane a clip's force across it is not measured: the first components are the same.
+            // A planar problem measures no out-of-plane clip force; the first components correspond.
             for (a, b) in own.iter().flat_map(|own| self.in_plane(own).zip(other.in_plane(frame))) {
                 apart = apart.max((a - b).abs());
                 largest = largest.max(b.abs());
@@ -190,7 +189,7 @@ impl Balanced {
         (largest > 0.0).then(|| apart / largest)
     }
 
-    /// Root mean square distance of the nodes of a coarser grid, mm; `None` where the frames differ.
+    /// Root mean square distance at the nodes of a coarser grid, mm; `None` if the frames differ.
     pub(crate) fn position_error_mm(&self, other: &Self, nodes: usize) -> Option<f64> {
         let indices = |balanced: &Self| -> Vec<usize> {
             balanced.frames.iter().map(|frame| balanced.index(frame)).collect()
@@ -200,7 +199,7 @@ impl Balanced {
     }
 }
 
-/// Of points in space, 3 stacked coordinates each.
+/// Root mean square distance of points in space, 3 stacked coordinates each.
 pub(crate) fn root_mean_square_distance(a: &[f64], b: &[f64]) -> f64 {
     let sum: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
     (3.0 * sum / a.len().max(1) as f64).sqrt()

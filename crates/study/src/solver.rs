@@ -1,27 +1,27 @@
-//! How equilibria and fits are solved: as they are by default, or as published.
+//! Solver of equilibria and fits: the default, or as published.
 
 use cloth_fit::stage::Settings;
 use cloth_sim::equilibrium;
 
-/// The method of a run.
+/// Method of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
-    /// The program's own settings.
+    /// The default settings.
     Default,
     /// The published method: [`Settings::as_published`].
     AsPublished,
 }
 
 impl Solver {
-    /// Both.
+    /// Both solvers.
     pub const ALL: [Self; 2] = [Self::Default, Self::AsPublished];
 
-    /// How it finds equilibria.
+    /// Settings for equilibria.
     pub fn equilibrium(self) -> equilibrium::Settings {
         self.settings(Settings::default()).equilibrium
     }
 
-    /// The settings of a fit by it.
+    /// Applies the method to the settings of a fit.
     pub fn settings(self, settings: Settings) -> Settings {
         match self {
             Self::Default => settings,

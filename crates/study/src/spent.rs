@@ -1,21 +1,21 @@
-//! What a run has cost.
+//! Cost of a run.
 
 use crate::memory;
 use cloth_fit::equilibria::{Counters, Meter};
 use std::time::Instant;
 
-/// What a run has cost.
+/// Cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spent {
-    /// Wall time, s.
+    /// Wall-clock time, s.
     pub seconds: f64,
-    /// Equilibria sought, Newton steps, factorisations.
+    /// Equilibria attempted, Newton steps, factorisations.
     pub counters: Counters,
-    /// Largest resident memory of the program during the run, MiB; `None` where the system does not tell.
+    /// Peak resident memory of the program during the run, MiB; `None` if the system does not report it.
     pub peak_memory_mib: Option<f64>,
 }
 
-/// Does something, and tells what it has cost.
+/// Runs a task and measures its cost.
 pub(crate) fn spend<T>(meter: &Meter, work: impl FnOnce() -> T) -> (T, Spent) {
     memory::reset_peak();
     let before = meter.read();

@@ -1,4 +1,4 @@
-//! A whole study: how it is run, and all that it has found.
+//! A whole study: execution and results.
 
 use crate::ablation::{self, Ablated};
 use crate::extent::{Extent, Topic};
@@ -9,29 +9,29 @@ use crate::subject::Subject;
 use crate::{equilibria, fits, noise};
 use cloth_data::error::Result;
 
-/// All that a study has found.
+/// Results of a study.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     /// The fabric whose set was fitted.
     pub fabric: String,
-    /// What curve errors are measured against, in words.
+    /// Description of the reference for curve errors.
     pub reference: String,
-    /// One row a run.
+    /// One row per run.
     pub runs: Vec<Run>,
-    /// One row a part and scene.
+    /// One row per part and scene.
     pub ablation: Vec<Ablated>,
 }
 
 impl Study {
-    /// Nodes a side of the finest grid on which fits were run by both solvers, or by one if there is none.
+    /// Nodes per side of the finest grid on which both solvers ran fits, or else the default solver.
     pub fn finest_fit(&self) -> Option<usize> {
         let of = |solver| self.part(Part::Fit).filter(move |run| run.solver == solver).map(|run| run.nodes);
         let both = of(Solver::AsPublished).filter(|nodes| of(Solver::Default).any(|other| other == *nodes));
         both.max().or(of(Solver::Default).max())
     }
 
-    /// The rows of one part.
+    /// Rows of one kind.
     pub fn part(&self, part: Part) -> impl Iterator<Item = &Run> {
         self.runs.iter().filter(move |run| run.part == part)
     }
@@ -40,7 +40,7 @@ impl Study {
 /// Runs a whole study.
 ///
 /// # Errors
-/// A set that not even the reference fit can be made of; scenes that the rig cannot make.
+/// A set for which even the reference fit fails; scenes that the rig cannot build.
 pub fn run(subject: &Subject, extent: &Extent, progress: &dyn Progress) -> Result<Study> {
     let fabric = &subject.fabric;
     let (mut runs, mut ablation, mut told) = (Vec::new(), Vec::new(), String::new());

@@ -1,4 +1,4 @@
-//! What a study is about: a measurement set, and the truth behind it where that is known.
+//! Subject of a study: a measurement set, and its known fabric if there is one.
 
 use crate::extent::Extent;
 use crate::fabrics::known;
@@ -7,25 +7,25 @@ use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::rig::{KnownFabric, Rig};
 use std::path::Path;
 
-/// The fabric that is measured if no set is given, and whose scenes stand in where a set's fabric is unknown.
+/// Fabric to measure if no set is given; also used for the scenes if a set's fabric is unknown.
 const BUILT_IN: &str = "cotton-denim";
 
 /// A measurement set and its fabric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
-    /// What is fitted.
+    /// The set to fit.
     pub set: MeasurementSet,
-    /// The fabric of the scenes that are only simulated: the set's, or where that is unknown cotton denim.
+    /// Fabric of the simulated scenes: the set's own, or cotton denim if that is unknown.
     pub fabric: KnownFabric,
-    /// That is the set's own fabric: the truth is known.
+    /// True if `fabric` is the set's own: the truth is known.
     pub is_known: bool,
 }
 
 impl Subject {
-    /// A set that was read; its fabric is known if its name is one of the rig's, or of a sample of one.
+    /// A given set. Its fabric is known if the set is named after a fabric of the rig, or after a sample of one.
     ///
     /// # Errors
-    /// None but those of a fabric file that comes with the program.
+    /// Only those of a built-in fabric file.
     pub fn of_set(set: MeasurementSet) -> Result<Self> {
         let (name, sample) = match set.fabric.name.rsplit_once('.') {
             Some((name, number)) => (name, number.parse().unwrap_or(0)),
@@ -38,10 +38,10 @@ impl Subject {
         Ok(Self { set, fabric: if is_known { fabric.sample(sample) } else { fabric }, is_known })
     }
 
-    /// Cotton denim on the virtual rig, in the tests that are fitted.
+    /// Cotton denim measured on the virtual rig, in the tests used for fits.
     ///
     /// # Errors
-    /// As [`Rig::measure`].
+    /// Those of [`Rig::measure`].
     pub fn built_in(extent: &Extent) -> Result<Self> {
         let fabric = KnownFabric::parse(Path::new(BUILT_IN), known(BUILT_IN).unwrap_or_default())?;
         let rig = Rig {

@@ -1,4 +1,4 @@
-//! `study.csv`, `ablation.csv`, and what `--json` prints.
+//! `study.csv`, `ablation.csv`, and the output of `--json`.
 
 use crate::ablation::Ablated;
 use crate::run::Run;
@@ -13,19 +13,19 @@ error_curve,floor,seconds,equilibria,iterations,factorisations,peak_memory_mib,o
 const ABLATION_COLUMNS: &str = "part,scene,by_default,seconds_with,seconds_without,saving,factorisations_with,\
 factorisations_without,error_force,error_position_mm,error_curve,status_with,status_without\n";
 
-/// The text of `study.csv`: a row a run, empty where there is nothing to tell.
+/// Text of `study.csv`: one row per run, with empty cells for missing values.
 pub fn study_csv(study: &Study) -> String {
     let rows = study.runs.iter().map(|run| run_cells(run).join(",") + "\n");
     std::iter::once(RUN_COLUMNS.to_string()).chain(rows).collect()
 }
 
-/// The text of `ablation.csv`.
+/// Text of `ablation.csv`.
 pub fn ablation_csv(study: &Study) -> String {
     let rows = study.ablation.iter().map(|row| ablation_cells(row).join(",") + "\n");
     std::iter::once(ABLATION_COLUMNS.to_string()).chain(rows).collect()
 }
 
-/// Both tables as lists of objects, by the names of their columns.
+/// Both tables as lists of objects, keyed by column name.
 pub fn study_json(study: &Study) -> Value {
     let runs: Vec<Value> = study.runs.iter().map(|run| object(RUN_COLUMNS, run_cells(run))).collect();
     let ablation: Vec<Value> =
@@ -33,7 +33,7 @@ pub fn study_json(study: &Study) -> Value {
     json!({ "fabric": study.fabric, "reference": study.reference, "runs": runs, "ablation": ablation })
 }
 
-/// Numbers as numbers, nothing as null, all else as text.
+/// Numbers as numbers, empty cells as null, everything else as text.
 fn object(columns: &str, cells: Vec<String>) -> Value {
     let value = |cell: String| match (cell.parse::<f64>(), cell.parse::<bool>()) {
         _ if cell.is_empty() => Value::Null,
@@ -92,7 +92,7 @@ fn ablation_cells(row: &Ablated) -> Vec<String> {
     ]
 }
 
-/// A tolerance as the tables have it: `relative 1e-6`, or `absolute 1e-5 N`.
+/// A tolerance as written in the tables: `relative 1e-6`, or `absolute 1e-5 N`.
 pub fn tolerance(tolerance: Tolerance) -> String {
     match tolerance {
         Tolerance::Relative(share) => format!("relative {share:e}"),
@@ -107,7 +107,7 @@ fn text(value: &str) -> String {
     }
 }
 
-/// Five digits, which no timing and no error here exceeds; nothing where there is no number.
+/// Five digits, more than the accuracy of any time or error here; empty for `None`.
 fn number(value: Option<f64>) -> String {
     value.filter(|value| value.is_finite()).map(|value| format!("{value:.4e}")).unwrap_or_default()
 }

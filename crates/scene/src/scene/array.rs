@@ -22,7 +22,7 @@ pub(super) fn pair(file: &TomlFile, key: &str, value: [f64; 2]) -> Result<[f64; 
     Err(file.invalid(key, format!("{value:?}"), "two finite numbers"))
 }
 
-/// Refuses an array longer than what it is read as: the rest would be dropped in silence.
+/// Rejects an array longer than expected; the excess would otherwise be dropped silently.
 pub(super) fn check_length(file: &TomlFile, key: &str, length: usize) -> Result<()> {
     if !file.has(&format!("{key}[{length}]")) {
         return Ok(());

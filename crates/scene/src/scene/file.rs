@@ -1,4 +1,4 @@
-//! `SCENE.toml` as it stands in the file: docs/formats.md.
+//! Structure of `SCENE.toml`: docs/formats.md.
 
 use cloth_sim::material::Component;
 use cloth_sim::mesh::Diagonals;
@@ -44,17 +44,17 @@ fn frames() -> f64 {
     25.0
 }
 
-/// What a scene measures of its last shape.
+/// Measurement of a scene's final shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
-    /// How far the sheet hangs below what holds it.
+    /// Depth of the sheet below its holds.
     Droop,
-    /// The share of the overhang's area that its shadow has.
+    /// Drape coefficient: share of the overhang's area that its shadow covers.
     DrapeCoefficient,
 }
 
-/// The sheet: one of grid, disc and mesh, and where it lies.
+/// The sheet: one of grid, disc and mesh, and its position.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SheetFile {
@@ -114,7 +114,7 @@ pub(super) enum Axis {
     Z,
 }
 
-/// Which nodes are held: one of the first five.
+/// Held nodes: exactly one of the first five keys.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct HoldFile {
@@ -153,7 +153,7 @@ pub(super) enum EdgeName {
     Top,
 }
 
-/// In material coordinates.
+/// A box in material coordinates.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BoxFile {
@@ -161,7 +161,7 @@ pub(super) struct BoxFile {
     pub(super) high_m: [f64; 2],
 }
 
-/// In material coordinates.
+/// A circle in material coordinates.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CircleFile {

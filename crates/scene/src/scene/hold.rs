@@ -1,4 +1,4 @@
-//! What holds the sheet of a scene.
+//! Holds of a scene's sheet.
 
 use super::array::{pair, vector};
 use super::file::{BoxFile, CircleFile, Corner, EdgeName, FreeName, HoldFile};
@@ -12,23 +12,23 @@ use std::collections::BTreeMap;
 /// A circle in material coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
-    /// m.
+    /// Centre, m.
     pub centre: Vector2<f64>,
-    /// m.
+    /// Radius, m.
     pub radius: f64,
 }
 
-/// All that is held.
+/// All held and guided nodes.
 pub(super) struct Holds {
     pub(super) held: Vec<Held>,
     pub(super) guided: Vec<Guided>,
     pub(super) support: Option<Circle>,
 }
 
-/// Edges and circles reach so much farther, as a share of the sheet's size: rounding must not decide.
+/// Extra reach of edges and circles, as a share of the sheet's size, so that rounding does not decide.
 const REACH: f64 = 1e-6;
 
-/// The nodes that the file's holds name; of a node in several the first has it.
+/// Nodes named by the file's holds; a node in several holds belongs to the first.
 pub(super) fn holds(holds: &[HoldFile], mesh: &Mesh, file: &TomlFile) -> Result<Holds> {
     let mut held = BTreeMap::new();
     let mut guided = BTreeMap::new();
@@ -113,7 +113,7 @@ fn select(hold: &HoldFile, key: &str, mesh: &Mesh, file: &TomlFile) -> Result<Ve
     })
 }
 
-/// In which directions the nodes may still move; `None` if in none.
+/// Free directions of a hold's nodes; `None` for fixed nodes.
 fn free(hold: &HoldFile, key: &str, file: &TomlFile) -> Result<Option<Free>> {
     match (hold.free, hold.direction) {
         (None, None) => Ok(None),

@@ -1,4 +1,4 @@
-//! How a scene's motion is computed.
+//! Settings of a scene's motion.
 
 use super::array::vector;
 use super::file::{DampingFile, IntegratorName, LinearName, NewtonName, SolverFile, WindFile};
@@ -9,10 +9,10 @@ use cloth_sim::dynamics::{Damping, Integrator, LinearSolver, Newton, Settings, W
 /// γ of conjugate gradients, as published.
 const LINEAR_TOLERANCE: f64 = 1e-5;
 
-/// Most iterations of one linear system.
+/// Maximum iterations of one linear system.
 const LINEAR_ITERATIONS: usize = 1000;
 
-/// The settings that the file describes.
+/// Settings described by the file.
 pub(super) fn settings(
     step: f64,
     solver: &SolverFile,
@@ -34,7 +34,7 @@ pub(super) fn settings(
 
 fn integrator(solver: &SolverFile, file: &TomlFile) -> Result<Integrator> {
     let SolverFile { integrator, newton, tolerance, linear, linear_tolerance, linear_iterations } = *solver;
-    // A key that would do nothing is a mistake.
+    // A key without effect is an error.
     let idle = |keys: &[(&str, bool)], why: &str| match keys.iter().find(|(_, given)| *given) {
         Some((key, _)) => Err(file.invalid(&format!("solver.{key}"), "a value that nothing uses", why)),
         None => Ok(()),

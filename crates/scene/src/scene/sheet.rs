@@ -1,4 +1,4 @@
-//! The sheet of a scene, placed in space.
+//! The sheet of a scene and its position in space.
 
 use super::array::{check_length, vector};
 use super::file::{Axis, DiscFile, GridFile, MeshFile, SheetFile};
@@ -9,31 +9,30 @@ use cloth_sim::mesh::{Grid, Mesh};
 use nalgebra::Vector3;
 use std::path::Path;
 
-/// Two axes count as perpendicular up to this cosine.
+/// Axes count as perpendicular up to this cosine of the angle between them.
 const PERPENDICULAR: f64 = 1e-6;
 
-/// More than any solver here takes in a day; a slip of the finger would otherwise take all memory.
+/// Node limit, above what any solver here handles in a day; a typing error would otherwise use up all memory.
 const MOST_NODES: usize = 1_000_000;
 
-/// Of a disc with almost as many nodes, 1 + 3·rings·(rings + 1).
+/// Ring limit: a disc with nearly as many nodes, 1 + 3·rings·(rings + 1).
 const MOST_RINGS: usize = 576;
 
-/// A sheet so many times its size from the origin loses digits: three of sixteen, and more with forces, which are
+/// A sheet this many times its size from the origin loses three of sixteen digits, and more in forces, which are
 /// differences.
 const FAR: f64 = 1e3;
 
-/// Where a sheet's origin is best: at itself if it is far from zero, to whole metres, so that moving it rounds nothing.
+/// Best origin for a sheet: near the sheet if that is far from zero, in whole metres so that the shift rounds nothing.
 pub(super) fn origin(mesh: &Mesh) -> Vector3<f64> {
     let centre = mesh.positions.iter().sum::<Vector3<f64>>() / mesh.len() as f64;
     let size = mesh.positions.iter().map(|position| (position - centre).norm()).fold(0.0, f64::max);
     if centre.norm() > FAR * size { centre.map(f64::round) } else { Vector3::zeros() }
 }
 
-/// The mesh that the file describes.
+/// Builds the mesh that the file describes.
 pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<Mesh> {
-    let refuse = |key: &str, error: cloth_sim::error::Error| {
-        file.invalid(key, error.to_string(), "a sheet that can be")
-    };
+    let refuse =
+        |key: &str, error: cloth_sim::error::Error| file.invalid(key, error.to_string(), "a valid sheet");
     check_length(file, "sheet.grid.nodes", 2)?;
     let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
         (Some(grid), None, None) => {
@@ -45,8 +44,8 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
         (None, None, Some(mesh)) => {
             let placed = [("origin_m", sheet.origin_m), ("weft", sheet.weft), ("warp", sheet.warp)];
             if let Some((key, _)) = placed.into_iter().find(|(_, value)| value.is_some()) {
-                let expected = "nothing: a mesh file says where the sheet lies";
-                return Err(file.invalid(&format!("sheet.{key}"), "a place", expected));
+                let expected = "none: the mesh file gives the position";
+                return Err(file.invalid(&format!("sheet.{key}"), "a position", expected));
             }
             return of_file(mesh, scene, file);
         }
@@ -99,7 +98,7 @@ fn unit(axis: Axis) -> Vector3<f64> {
     }
 }
 
-/// Material coordinates (u, v) at origin + u·weft + v·warp.
+/// Places material coordinates (u, v) at origin + u·weft + v·warp.
 fn place(flat: Mesh, sheet: &SheetFile, file: &TomlFile) -> Result<Mesh> {
     let axis = |key: &str, given: Option<[f64; 3]>, default: Vector3<f64>| {
         let axis = given.map_or(Ok(default), |given| vector(file, key, given))?;
@@ -118,8 +117,8 @@ fn place(flat: Mesh, sheet: &SheetFile, file: &TomlFile) -> Result<Mesh> {
     let origin = vector(file, "sheet.origin_m", sheet.origin_m.unwrap_or_default())?;
     let positions = flat.material.iter().map(|m| origin + m.x * weft + m.y * warp).collect();
     let grid = flat.grid;
-    // What was a sheet about the origin is none where numbers are too far apart to tell its nodes from one another.
+    // A sheet that is valid near the origin may not be where coordinates are too coarse to separate its nodes.
     let mesh = Mesh::new(positions, flat.material, flat.triangles)
-        .map_err(|error| file.invalid("sheet.origin_m", error.to_string(), "a place nearer to zero"))?;
+        .map_err(|error| file.invalid("sheet.origin_m", error.to_string(), "a position nearer to zero"))?;
     Ok(Mesh { grid, ..mesh })
 }

@@ -1,4 +1,4 @@
-//! Where a scene starts: its sheet, slightly out of its plane.
+//! Start of a scene: the sheet, slightly perturbed out of its plane.
 
 use cloth_data::error::Result;
 use cloth_data::io::TomlFile;
@@ -6,13 +6,13 @@ use cloth_sim::load::{Guided, Held};
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Vector2, Vector3};
 
-/// Waves that the perturbation is made of, one a half turn's share of directions.
+/// Number of waves in the perturbation, with directions spread evenly over half a turn.
 const WAVES: usize = 12;
 
-/// Stacked coordinates of the sheet, every free node moved along the sheet's normal by up to `size`, m.
+/// Stacked coordinates of the sheet, with every free node moved along the sheet's normal by up to `size`, m.
 ///
-/// The shape of the perturbation is a fixed one of the material coordinates, over the sheet's size L, and no matter of the
-/// mesh, so that a finer mesh starts alike:
+/// The perturbation is a fixed function of the material coordinates over the sheet's size L, independent of the mesh,
+/// so that a finer mesh starts alike:
 ///
 /// ```text
 /// Σ_k sin(2π λ_k (u cos α_k + v sin α_k)/L + φ_k) / n      α_k = kπ/n,   λ_k from 1 to 4,   φ_k irregular
@@ -40,12 +40,12 @@ pub(super) fn perturbed(
     Ok(mesh.positions.iter().enumerate().flat_map(place).collect())
 }
 
-/// Between −1 and 1.
+/// Perturbation at a point, between −1 and 1.
 fn shape(place: Vector2<f64>) -> f64 {
     use std::f64::consts::{PI, TAU};
     let wave = |k: usize| {
         let (sine, cosine) = (PI * k as f64 / WAVES as f64).sin_cos();
-        // Multiples of the golden ratio and of √2 repeat nowhere.
+        // Multiples of the golden ratio and of √2 never repeat.
         let count = 1.0 + 3.0 * (0.618_033_988_749_894_9 * k as f64).fract();
         let phase = TAU * (std::f64::consts::SQRT_2 * k as f64).fract();
         (TAU * count * (place.x * cosine + place.y * sine) + phase).sin()
@@ -53,7 +53,7 @@ fn shape(place: Vector2<f64>) -> f64 {
     (0..WAVES).map(wave).sum::<f64>() / WAVES as f64
 }
 
-/// The mean normal of a sheet, of unit length; along z where it has none.
+/// Mean unit normal of a sheet; the z axis if it is undefined.
 pub fn normal(mesh: &Mesh) -> Vector3<f64> {
     let cross = |[a, b, c]: &[usize; 3]| {
         let [a, b, c] = [a, b, c].map(|&node| mesh.positions[node]);

@@ -1,4 +1,4 @@
-//! Every defect of a scene with the whole message that it ends in, and what a scene that is none comes to.
+//! Every error of a scene with its full message, and the contents of valid scenes.
 
 use super::*;
 use cloth_sim::dynamics::{Damping, Integrator, LinearSolver, Newton, Wind};
@@ -19,14 +19,14 @@ integrator = \"implicit-euler\"
 
 const GRID: &str = "grid = { width_m = 0.2, height_m = 0.4, nodes = [3, 3] }";
 
-/// A square of two triangles in the plane of x and z, with material coordinates.
+/// A square of two triangles in the xz plane, with material coordinates.
 const MESH: &str = "v 0 0 0\nv 0.1 0 0\nv 0.1 0 0.1\nv 0 0 0.1\nvt 0 0\nvt 0.1 0\nvt 0.1 0.1\nvt 0 0.1\n\
                     f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
 
-/// One in the plane of y and z, without.
+/// A square in the yz plane, without material coordinates.
 const BARE: &str = "v 0 0 0\nv 0 0 0.1\nv 0 0.1 0.1\nv 0 0.1 0\nf 1 2 3\nf 1 3 4\n";
 
-/// The scene of a text, beside `sheet.obj` and `bare.obj`.
+/// Reads a scene from a text, next to `sheet.obj` and `bare.obj`.
 fn read(text: &str) -> Result<Scene> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sheet.obj"), MESH).unwrap();
@@ -88,7 +88,7 @@ fn numbers_of_the_scene() {
         ),
     ]);
     let free = changed("[[held]]\nedge = \"top\"\n", "").replace("[sheet]", "measure = \"droop\"\n[sheet]");
-    assert_eq!(message(&free), "s.toml:3 measure: found droop, expected a sheet that is held somewhere");
+    assert_eq!(message(&free), "s.toml:3 measure: found droop, expected a sheet with [[held]] nodes");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn sheets() {
         (
             "[3, 3]",
             "[1, 3]",
-            ":4 sheet.grid: found columns: found 1, expected at least 2 nodes, expected a sheet that can be",
+            ":4 sheet.grid: found columns: found 1, expected at least 2 nodes, expected a valid sheet",
         ),
         (
             "[3, 3]",
@@ -115,19 +115,19 @@ fn sheets() {
         (
             "0.2,",
             "nan,",
-            ":4 sheet.grid: found width: found NaN, expected a positive length in metres, expected a sheet that can be",
+            ":4 sheet.grid: found width: found NaN, expected a positive length in metres, expected a valid sheet",
         ),
         (GRID, &disc(", kept_ring = 5"), ":4 sheet.disc.kept_ring: found 5, expected 1 to 4"),
         (GRID, &disc(", kept_ring = 0"), ":4 sheet.disc.kept_ring: found 0, expected 1 to 4"),
         (
             GRID,
             &disc("").replace("0.1", "-0.1"),
-            ":4 sheet.disc: found radius: found -0.1, expected a positive length in metres, expected a sheet that can be",
+            ":4 sheet.disc: found radius: found -0.1, expected a positive length in metres, expected a valid sheet",
         ),
         (
             GRID,
             &format!("{}\norigin_m = [0, 0, 0]", mesh("")),
-            ":5 sheet.origin_m: found a place, expected nothing: a mesh file says where the sheet lies",
+            ":5 sheet.origin_m: found a position, expected none: the mesh file gives the position",
         ),
         (
             GRID,
@@ -163,7 +163,7 @@ fn sheets() {
         (
             GRID,
             &format!("{GRID}\norigin_m = [1e20, 0, 0]"),
-            ":5 sheet.origin_m: found vertices 0 and 1 have the same rest position; merge them, expected a place nearer to zero",
+            ":5 sheet.origin_m: found vertices 0 and 1 have the same rest position; merge them, expected a position nearer to zero",
         ),
     ]);
     let elsewhere = changed(GRID, &mesh("")).replace("sheet.obj", "nothing.obj");
@@ -329,7 +329,7 @@ fn solvers_and_winds() {
     ]);
 }
 
-/// The nodes that a hold names, and the clip of each.
+/// Nodes named by a hold, each with its clip.
 fn held(hold: &str) -> Vec<(usize, usize)> {
     let scene = read(&changed("edge = \"top\"", hold)).unwrap();
     scene.held.iter().map(|held| (held.node, held.clip.unwrap())).collect()
@@ -337,7 +337,7 @@ fn held(hold: &str) -> Vec<(usize, usize)> {
 
 #[test]
 fn holds_name_the_nodes_that_lie_there() {
-    // Nodes are numbered along weft, from the bottom up.
+    // Nodes are numbered along weft, from bottom to top.
     for (hold, nodes) in [
         ("corner = \"bottom-left\"", vec![0]),
         ("corner = \"bottom-right\"", vec![2]),
@@ -353,7 +353,7 @@ fn holds_name_the_nodes_that_lie_there() {
         let found: Vec<usize> = held(hold).into_iter().map(|(node, _)| node).collect();
         assert_eq!(found, nodes, "{hold}");
     }
-    // Of a node in several holds the first has it.
+    // A node in several holds belongs to the first.
     assert_eq!(held("nodes = [4, 7]\n[[held]]\nnodes = [7, 8]"), [(4, 0), (7, 0), (8, 1)]);
 }
 

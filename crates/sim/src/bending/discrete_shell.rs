@@ -30,18 +30,18 @@ pub struct Hinge {
     pub rest_length: f64,
     /// h₀, m.
     pub width: f64,
-    /// An edge along warp carries weft bending, and the other way round.
+    /// Component by edge direction: an edge along warp carries weft bending, and vice versa.
     pub component: Component,
 }
 
-/// The vectors of a hinge.
+/// Vectors of a deformed hinge.
 struct Geometry {
     edge: Vector3<f64>,
     length: f64,
     normals: [Vector3<f64>; 2],
-    /// From x₀ to each wing.
+    /// Vectors from x₀ to each wing node.
     wings: [Vector3<f64>; 2],
-    /// Where the wings' feet stand on the edge, 0 at x₀ and 1 at x₁.
+    /// Foot points of the wings on the edge: 0 at x₀, 1 at x₁.
     feet: [f64; 2],
 }
 
@@ -65,8 +65,8 @@ impl Geometry {
         (n1.cross(n2).dot(&self.edge) / self.length).atan2(n1.dot(n2))
     }
 
-    /// A multiple of ∇θ: ∂θ/∂x₂ = −|e| n₁/|n₁|², ∂θ/∂x₃ = −|e| n₂/|n₂|²; the edge's ends take what balances force and
-    /// torque.
+    /// A multiple of ∇θ: ∂θ/∂x₂ = −|e| n₁/|n₁|², ∂θ/∂x₃ = −|e| n₂/|n₂|². The edge nodes take the parts that balance
+    /// force and torque.
     #[inline(always)]
     fn gradient(&self, factor: f64) -> [Vector3<f64>; 4] {
         let [n1, n2] = &self.normals;
@@ -78,8 +78,8 @@ impl Geometry {
 
     /// Adds a multiple of ∇²θ to the lower blocks.
     ///
-    /// Each side has its unit normal n̂, its height h, the unit vector m̂ from the edge to the wing, and the edge ê of
-    /// length l. A node a moves the wing off the edge by its share c_a, and turns the edge by d_a/l:
+    /// Each side has a unit normal n̂, a height h, a unit vector m̂ from the edge to the wing, and the edge ê of length
+    /// l. Moving node a shifts the wing off the edge by its share c_a and turns the edge by d_a/l:
     ///
     /// ```text
     ///        x₀        x₁     wing
@@ -97,9 +97,9 @@ impl Geometry {
             let normal = self.normals[side] * (factor / size);
             let wing = self.length / size;
             let across = (self.wings[side] - self.edge * self.feet[side]) * wing;
-            // The factor is in the normal, the lengths are in the shares: c/h and d/l.
+            // The normal carries the factor; the shares carry the lengths: c/h and d/l.
             let foot = self.feet[side];
-            // Node 0 follows from the others.
+            // Node 0 is filled in from the others.
             let shares = [(1, [-foot * wing, turns]), (2 + side, [wing, 0.0])];
             for (row, (a, [c_a, d_a])) in shares.into_iter().enumerate() {
                 for (b, [c_b, d_b]) in shares.into_iter().take(row + 1) {
@@ -113,10 +113,10 @@ impl Geometry {
 }
 
 impl Hinge {
-    /// The hinges of a mesh: one an inner edge, classed by the edge's direction in material coordinates.
+    /// All hinges of a mesh, one per inner edge. The edge's direction in material coordinates selects the component.
     ///
     /// # Errors
-    /// A wing without height.
+    /// A wing with zero height.
     pub fn all(mesh: &Mesh) -> Result<Vec<Self>> {
         let mut hinges = Vec::new();
         for edge in mesh.edges()? {
@@ -125,7 +125,7 @@ impl Hinge {
             let geometry = Geometry::new(&nodes.map(|node| mesh.positions[node]));
             let squared = geometry.length * geometry.length;
             for (normal, wing) in geometry.normals.iter().zip([edge.left, right]) {
-                // Relative, and written so that a NaN is caught too.
+                // Relative test, negated to catch NaN.
                 if !(normal.norm() > 1e-10 * squared) {
                     return Err(Error::CollapsedWing { edge: edge.ends, wing });
                 }
@@ -147,7 +147,7 @@ impl Hinge {
         Ok(hinges)
     }
 
-    /// (θ − θ₀)/h₀ with the shorter of the two ways round.
+    /// (θ − θ₀)/h₀, with the angle difference wrapped to (−π, π].
     fn strain(&self, geometry: &Geometry) -> f64 {
         let turn = geometry.angle() - self.rest_angle;
         let wrapped = if turn > PI {
@@ -193,6 +193,6 @@ impl Element<4, 3, 1> for Hinge {
         Geometry::new(x).add_hessian(stress / self.width, blocks);
     }
 
-    /// Without the geometric part, which is never semi-definite, the hinge's matrix is.
+    /// The hinge's matrix is semi-definite without the geometric part, which never is.
     fn add_clamped(&self, _x: &[Point<3>; 4], _stress: &[f64; 1], _blocks: &mut [[Block<3>; 4]; 4]) {}
 }

@@ -1,4 +1,4 @@
-//! Elements that parallel groups of nodes make alike: one is computed, and stands for all.
+//! Identical elements between parallel tied groups: one is computed and represents all.
 //!
 //! ```text
 //! ●───●───●───●     line, moves as a whole       every cell between two parallel lines has the strains of the first:
@@ -12,13 +12,13 @@ use crate::mesh::Mesh;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
-/// Offsets at rest that differ by less than this share of the mean edge are the same.
+/// Rest offsets closer than this share of the mean edge count as equal.
 const SAME_OFFSET: f64 = 1e-6;
 
-/// Two nodes of an element that was left out, and those of the one that stands for it.
+/// Two nodes of an omitted element, and the matching two of its representative.
 pub(super) type Twins = [[usize; 2]; 2];
 
-/// Which elements are alike.
+/// Finds identical elements.
 pub(super) struct Alike<'a> {
     mesh: &'a Mesh,
     /// The first node of each node's group.
@@ -27,8 +27,8 @@ pub(super) struct Alike<'a> {
     twins: BTreeSet<Twins>,
 }
 
-/// What alike elements share: the groups of their nodes, and the nodes' offsets from the first in multiples of the smallest
-/// that counts.
+/// Identifies identical elements: the groups of their nodes, and the node offsets from the first node in multiples of
+/// the smallest distinguishable offset.
 type Key = (Vec<usize>, Vec<i64>);
 
 impl<'a> Alike<'a> {
@@ -36,7 +36,7 @@ impl<'a> Alike<'a> {
         Self { mesh, leader, mean_edge, twins: BTreeSet::new() }
     }
 
-    /// Leaves out what others stand for; returns what was left out.
+    /// Keeps one of each set of identical elements; returns the node pairs of the omitted ones.
     pub(super) fn merge(mut self, membrane: &mut Membrane, bending: &mut Option<Bending>) -> Vec<Twins> {
         match membrane {
             Membrane::Springs(springs) => self.merge_all(springs, |s| s.nodes.to_vec(), |s| &mut s.area),
@@ -59,7 +59,7 @@ impl<'a> Alike<'a> {
         self.twins.into_iter().collect()
     }
 
-    /// * `extent` — an element's area, or what that is proportional to
+    /// * `extent` — an element's area, or a quantity proportional to it
     fn merge_all<E>(
         &mut self,
         elements: &mut Vec<E>,
@@ -99,7 +99,7 @@ impl<'a> Alike<'a> {
     }
 }
 
-/// True if elements that stand for others have the shape of those in a state.
+/// True if omitted elements still have the shape of their representatives in a state.
 pub(super) fn are_alike(twins: &[Twins], x: &[f64], mean_edge: f64) -> bool {
     twins.iter().all(|[left_out, kept]| {
         let offset = |[from, to]: &[usize; 2], i: usize| x[3 * to + i] - x[3 * from + i];

@@ -1,11 +1,11 @@
-//! Guided nodes: rows and columns of the matrix filtered to the directions that are free.
+//! Guided nodes: filters the matrix rows and columns to the free directions.
 //!
 //! ```text
 //! S K S + c (I − S)      S the projection onto the free directions of every node
 //! ```
 //!
-//! Across the free directions stands a diagonal that no force acts on, so that the same matrix serves a factorisation and
-//! conjugate gradients. On it these take the same steps as with vectors filtered at every step.
+//! The blocked directions get a diagonal on which no force acts, so the same matrix suits both factorisation and
+//! conjugate gradients. Conjugate gradients take the same steps on it as when vectors are filtered in every step.
 //!
 //! Source: Baraff and Witkin 1998, §5.
 
@@ -16,28 +16,28 @@ use crate::load::Guided;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
 
-/// Where the entries of a block stand among the matrix's values, by row and column.
+/// Positions of a block's entries among the matrix values, by row and column.
 type Block = [[usize; 3]; 3];
 
 /// A guided node.
 #[derive(Debug, Clone)]
 pub(super) struct Guide {
-    /// The first of its three unknowns.
+    /// First of the node's three unknowns.
     unknown: usize,
     /// S.
     projection: Matrix3<f64>,
-    /// The lower entries of its own block; what is above the diagonal names the mirrored entry.
+    /// Lower entries of the node's own block; an entry above the diagonal refers to its mirror image.
     own: Block,
-    /// The blocks in its rows.
+    /// Blocks in the node's rows.
     rows: Vec<Block>,
-    /// The blocks in its columns.
+    /// Blocks in the node's columns.
     columns: Vec<Block>,
 }
 
 /// The guided nodes of a problem.
 ///
-/// * `unknown_of` — every coordinate's unknown
-/// * `neighbours` — of every node
+/// * `unknown_of` — unknown of every coordinate
+/// * `neighbours` — neighbours of every node
 ///
 /// # Errors
 /// A direction that is zero or not finite.
@@ -73,13 +73,13 @@ pub(super) fn guides(
 }
 
 impl Guide {
-    /// Projects the node's three of a vector over the unknowns.
+    /// Projects the node's three entries of a vector over the unknowns.
     pub(super) fn project(&self, unknowns: &mut [f64]) {
         let node = &mut unknowns[self.unknown..self.unknown + 3];
         node.copy_from_slice((self.projection * Vector3::from_column_slice(node)).as_slice());
     }
 
-    /// Filters the node's rows and columns of a matrix with these lower entries.
+    /// Filters the node's rows and columns in a matrix with these lower entries.
     pub(super) fn filter(&self, values: &mut [f64]) {
         let read = |values: &[f64], block: &Block| Matrix3::from_fn(|i, j| values[block[i][j]]);
         let write = |values: &mut [f64], block: &Block, filtered: Matrix3<f64>| {

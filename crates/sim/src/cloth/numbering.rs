@@ -1,4 +1,4 @@
-//! Which unknown every coordinate is, and where every entry of every element's Hessian goes.
+//! Numbering of the unknowns, and the destination of every entry of every element's Hessian.
 
 use crate::element::{Element, Pass, lower_entries};
 use crate::linear::matrix::Pattern;
@@ -6,12 +6,12 @@ use crate::linear::ordering::order;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
-/// A coordinate that is no unknown.
+/// Marks a coordinate that is not an unknown.
 pub(super) const HELD: usize = usize::MAX;
 
-/// Unknowns in an order of the nodes that keeps the factor sparse, the coordinates of a node together.
+/// Numbers the unknowns in a node order that keeps the factor sparse. The coordinates of a node are consecutive.
 ///
-/// * `places` — of all nodes at rest, m
+/// * `places` — rest positions of all nodes, m
 pub(super) fn number(
     moves: &[bool],
     neighbours: &[BTreeSet<usize>],
@@ -58,7 +58,7 @@ pub(super) fn columns(
         .collect()
 }
 
-/// The node whose motion each node shares: itself, or the first of its group.
+/// The node whose displacement each node shares: itself, or the first of its group.
 pub(super) fn leaders(nodes: usize, tied: &[Vec<usize>]) -> Vec<usize> {
     let mut leader: Vec<usize> = (0..nodes).collect();
     for group in tied {
@@ -67,13 +67,13 @@ pub(super) fn leaders(nodes: usize, tied: &[Vec<usize>]) -> Vec<usize> {
     leader
 }
 
-/// Which nodes share an element.
+/// Collects the pairs of nodes that share an element.
 pub(super) struct GraphPass {
     pub(super) neighbours: Vec<BTreeSet<usize>>,
 }
 
 impl GraphPass {
-    /// The same between groups that move alike.
+    /// The same graph between tied groups.
     pub(super) fn led(self, leader: &[usize]) -> Vec<BTreeSet<usize>> {
         let mut led = vec![BTreeSet::new(); leader.len()];
         for (node, neighbours) in self.neighbours.into_iter().enumerate() {
@@ -99,7 +99,7 @@ impl Pass for GraphPass {
     }
 }
 
-/// Where every entry of every element's Hessian goes.
+/// Records the destination of every entry of every element's Hessian.
 pub(super) struct ScatterPass<'a> {
     pub(super) unknown_of: &'a [usize],
     pub(super) clip_of: &'a [Option<usize>],
@@ -125,7 +125,7 @@ impl ScatterPass<'_> {
             }
             (a, b) => self.pattern.position(a.max(b), a.min(b)),
         };
-        // What nobody reads goes to the last place.
+        // Unused entries go to the last place.
         place.unwrap_or(nowhere)
     }
 }

@@ -1,4 +1,4 @@
-//! What a cloth problem consists of, and what makes it none.
+//! A cloth problem and its validation.
 
 use crate::error::{Error, Part, Result};
 use crate::load::{Guided, Held};
@@ -7,35 +7,35 @@ use crate::mesh::Mesh;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a cloth problem consists of.
+/// A cloth problem.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     /// The sheet at rest.
     pub mesh: &'a Mesh,
-    /// Which membrane and bending.
+    /// Membrane and bending model.
     pub model: Model,
-    /// The components that store energy; the others are left out.
+    /// Components that store energy; the others are omitted.
     pub components: &'a [Component],
-    /// kg/m².
+    /// Areal density, kg/m².
     pub areal_density: f64,
-    /// m/s²; zero leaves the weight out.
+    /// Gravity, m/s²; zero for weightless cloth.
     pub gravity: Vector3<f64>,
-    /// Nodes at prescribed places.
+    /// Nodes at prescribed positions.
     pub held: &'a [Held],
-    /// Groups of nodes that move alike, all by the same displacement: the lines of a sheet that bends as a cylinder. The
-    /// groups are parallel in every state, as they are at rest, so that of elements between the same groups one stands for
-    /// all. A group is free, or held by one clip, as a whole.
+    /// Groups of nodes that share one displacement, such as the lines of a sheet that bends as a cylinder. The groups
+    /// are parallel at rest and stay so in every state, so one element represents all identical elements between the
+    /// same groups. A group is free as a whole, or held as a whole by one clip.
     pub tied: &'a [Vec<usize>],
     /// Nodes that may move in some directions only; neither held nor tied.
     pub guided: &'a [Guided],
-    /// All motion is in planes z = const: two unknowns a node.
+    /// Planar motion, z = const: two unknowns per node.
     pub planar: bool,
 }
 
 impl<'a> Problem<'a> {
-    /// A sheet in space without mass or weight, which nothing holds: the start of a problem that says what differs.
+    /// A free sheet in space without mass or weight; a starting point for struct update syntax.
     ///
-    /// * `components` — those that store energy; [`Component::ALL`] is right, too, where some have no curve
+    /// * `components` — components that store energy; [`Component::ALL`] is valid even if some have no curve
     pub fn new(mesh: &'a Mesh, model: Model, components: &'a [Component]) -> Self {
         Self {
             mesh,
@@ -51,7 +51,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// What makes a problem none.
+/// Rejects an invalid problem.
 pub(super) fn check(problem: &Problem<'_>) -> Result<()> {
     let density = problem.areal_density;
     if !(density >= 0.0 && density.is_finite()) {
@@ -66,7 +66,7 @@ pub(super) fn check(problem: &Problem<'_>) -> Result<()> {
         return Err(Error::InvalidValue {
             field: "planar",
             value: 1.0,
-            expected: "a problem without bending, without guides and without weight across its plane",
+            expected: "a problem without bending, guides or out-of-plane weight",
         });
     }
     let mesh = problem.mesh;
@@ -99,11 +99,11 @@ pub(super) fn check(problem: &Problem<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Every part of the cloth is held by a node, or by guides that no translation escapes.
+/// Checks that every part of the cloth is held by a node, or by guides that block all translations.
 pub(super) fn check_pinned(problem: &Problem<'_>) -> Result<()> {
     let mesh = problem.mesh;
     if problem.held.iter().any(|held| held.node >= mesh.len()) {
-        // What is wrong there is said later.
+        // Other errors are reported later.
         return Ok(());
     }
     let parts = mesh.parts();

@@ -1,10 +1,10 @@
-//! Cubics over the unit interval: where they lie below zero, and their extremes.
+//! Cubics over the unit interval: extremes, and intervals below a limit.
 
 /// p(u) = c₀ + c₁u + c₂u² + c₃u³ for 0 ≤ u ≤ 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cubic(pub(super) [f64; 4]);
 
-/// Halvings after which an interval is judged by its middle: 1e-12 of the whole.
+/// Bisections before an interval is judged by its midpoint: 1e-12 of the whole.
 const HALVINGS: u32 = 40;
 
 impl Cubic {
@@ -13,11 +13,11 @@ impl Cubic {
         a + u * (b + u * (c + u * d))
     }
 
-    /// Where it is least and where it is greatest: an end, or where the derivative is zero.
+    /// Least and greatest value. Each is at an end or where the derivative is zero.
     pub(super) fn extremes(&self) -> [f64; 2] {
         let [_, b, c, d] = self.0;
         let (half, product) = (c, 3.0 * b * d);
-        // 3d u² + 2c u + b = 0, without cancellation; a division by zero gives what lies in no interval.
+        // 3d u² + 2c u + b = 0, without cancellation; a division by zero gives a root outside the interval.
         let root = (half * half - product).sqrt();
         let sum = -(half + root.copysign(half));
         let inside = [sum / (3.0 * d), b / sum].into_iter().filter(|u| *u > 0.0 && *u < 1.0);
@@ -27,9 +27,10 @@ impl Cubic {
         })
     }
 
-    /// The intervals where it is below a limit, ascending.
+    /// Intervals where the cubic is below a limit, ascending.
     ///
-    /// The Bernstein coefficients bound a cubic: where all lie on one side, so does it; else it is halved.
+    /// The Bernstein coefficients bound the cubic. If they all lie on one side of the limit, so does the cubic;
+    /// otherwise the interval is halved.
     pub(super) fn below(&self, limit: f64) -> Vec<[f64; 2]> {
         let [a, b, c, d] = self.0;
         let a = a - limit;
@@ -57,7 +58,7 @@ fn collect(bernstein: [f64; 4], [low, high]: [f64; 2], halvings: u32, intervals:
     }
 }
 
-/// Adds an interval behind others; one that begins where the last ends makes it longer.
+/// Appends an interval; extends the last one if the two touch.
 pub(super) fn join(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
     match intervals.last_mut() {
         Some(last) if last[1] == low => last[1] = high,
@@ -75,7 +76,7 @@ mod tests {
         let mut rng = StdRng::seed_from_u64(5);
         for trial in 0..500 {
             let mut coefficients: [f64; 4] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
-            // Quadratics, lines and constants too.
+            // Include quadratics, lines and constants.
             coefficients[4 - trial % 4..].fill(0.0);
             let cubic = Cubic(coefficients);
             let below = cubic.below(0.0);
@@ -99,7 +100,7 @@ mod tests {
         let expected = [[0.0, 0.25], [0.5, 0.75]];
         assert!(below.iter().flatten().zip(expected.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-11));
         assert_eq!(below.len(), 2);
-        // One that only touches is not below.
+        // A cubic that only touches the limit is not below it.
         assert!(Cubic([0.0625, -0.5, 1.0, 0.0]).below(0.0).is_empty());
     }
 }

@@ -1,16 +1,16 @@
-//! Whether a curve can be simulated: what is wrong with it, where, and what that would do.
+//! Checks whether a curve can be simulated: defects, their strains, and their consequences.
 //!
 //! ```text
 //! k(ε) < 0                          negative stiffness
 //! σ′(ε) < κ                         low tangent           κ = 10⁻³ of the largest secant stiffness
 //! max σ′ > 10⁴ min σ′               tangent ratio
 //! Tₙ < κ                            end slope: stress beyond the last control point
-//! max k outside what cloth has      magnitude
-//! ε outside what was measured       unvisited range
+//! max k implausible for cloth       magnitude
+//! ε outside the measured range      unvisited range
 //! ```
 //!
-//! k and σ′ = k + εk′ are cubics on every segment: intervals are isolated by halving their Bernstein coefficients,
-//! extremes are computed from the roots of the derivative.
+//! k and σ′ = k + εk′ are cubics on every segment. Intervals are isolated by halving their Bernstein coefficients;
+//! extremes follow from the roots of the derivative.
 
 use super::StiffnessCurve;
 use super::polynomial::{Cubic, join};
@@ -18,28 +18,28 @@ use std::fmt;
 
 /// κ, the least tangent allowed, as a share of the largest secant stiffness.
 pub const LEAST_TANGENT: f64 = 1e-3;
-/// The largest ratio of two tangents of one curve.
+/// Largest allowed ratio of two tangents of one curve.
 pub const TANGENT_RATIO: f64 = 1e4;
-/// Between which a membrane's largest secant stiffness is plausible, N/m: far below a knit, far above glass yarns.
+/// Plausible range of a membrane's largest secant stiffness, N/m: from far below a knit to far above glass yarns.
 pub const MEMBRANE_STIFFNESS: [f64; 2] = [1e-1, 1e6];
-/// Between which the largest stiffness of a bending curve of hinges is plausible, N·m.
+/// Plausible range of the largest stiffness of a hinge bending curve, N·m.
 pub const BENDING_STIFFNESS: [f64; 2] = [1e-9, 1e-2];
 
-/// A limit is passed only by more than this share of it: fits and repairs rest on limits, to rounding.
+/// Tolerance on all limits, as a share: fits and repairs end on a limit, up to rounding.
 const ROUNDING: f64 = 1e-6;
-/// Of the range of the control points: what was visited may end by so little before it.
+/// The visited range may end before the last control point by this share of the control points' range.
 const NEARLY_ALL: f64 = 0.01;
 
-/// What is known of a curve besides its control points.
+/// Optional knowledge about a curve besides its control points.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Context {
-    /// Between which its largest secant stiffness is plausible, if that is to be judged.
+    /// Plausible range of its largest secant stiffness; `None` skips this check.
     pub magnitude: Option<[f64; 2]>,
-    /// The strains that a measurement visited, if there was one.
+    /// Strains visited by a measurement, if there was one.
     pub visited: Option<[f64; 2]>,
 }
 
-/// What can be found.
+/// Kinds of findings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// k < 0.
@@ -48,11 +48,11 @@ pub enum Kind {
     LowTangent,
     /// max σ′ / min σ′ > 10⁴.
     TangentRatio,
-    /// σ′ < κ at the last control point, and so for ever beyond it.
+    /// σ′ < κ at the last control point, and hence everywhere beyond it.
     EndSlope,
-    /// No cloth is so stiff or so soft.
+    /// Stiffness outside the range of real cloth.
     Magnitude,
-    /// No measurement was made there.
+    /// Range without measurements.
     Unvisited,
 }
 
@@ -69,12 +69,12 @@ impl fmt::Display for Kind {
     }
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
-    /// Not to be simulated as it is.
+    /// Do not simulate the curve as it is.
     Defect,
-    /// To be known.
+    /// For information only.
     Note,
 }
 
@@ -87,16 +87,16 @@ impl fmt::Display for Severity {
     }
 }
 
-/// Something that is wrong with a curve, or should be known of it.
+/// A defect of a curve, or a note on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// What.
+    /// Kind of finding.
     pub kind: Kind,
-    /// Where, in the curve's own strain; an infinite end goes on for ever.
+    /// Strain interval, in the curve's own strain; an infinite end extends without limit.
     pub strains: [f64; 2],
-    /// The worst value there: stiffness, tangent, ratio; share of the range for what was not visited.
+    /// Worst value in the interval: stiffness, tangent or ratio; for unvisited strains, their share of the range.
     pub value: f64,
-    /// What it should not pass.
+    /// Limit on that value.
     pub limit: f64,
 }
 
@@ -104,35 +104,35 @@ impl Finding {
     /// A defect or a note.
     pub fn severity(&self) -> Severity {
         match self.kind {
-            // Energy without a minimum, or equilibria that jump: no solver and no time step repairs that.
+            // No energy minimum, or jumping equilibria: neither solver nor time step can fix that.
             Kind::NegativeStiffness | Kind::LowTangent | Kind::EndSlope => Severity::Defect,
-            // Stable, but the stiffest strain sets the step of all.
+            // Stable, but the stiffest strain dictates the time step.
             Kind::TangentRatio => Severity::Defect,
-            // Stable too, but a factor of a thousand is a wrong unit, and the result would be another cloth.
+            // Stable too, but a factor of a thousand indicates a wrong unit; the result would be a different cloth.
             Kind::Magnitude => Severity::Defect,
-            // Every curve is extrapolated somewhere; that harms no solver.
+            // Every curve is extrapolated somewhere; solvers cope with that.
             Kind::Unvisited => Severity::Note,
         }
     }
 
-    /// True if the curve is not to be simulated as it is.
+    /// True if the curve should not be simulated as it is.
     pub fn is_defect(&self) -> bool {
         self.severity() == Severity::Defect
     }
 
-    /// True if the curve can go wrong in a simulation because of its shape, whatever its unit.
+    /// True if the curve's shape, whatever its unit, can make a simulation fail.
     pub fn is_unstable(&self) -> bool {
         self.is_defect() && self.kind != Kind::Magnitude
     }
 
-    /// What it would do in a simulation.
+    /// Consequence in a simulation.
     pub fn consequence(&self) -> &'static str {
         match self.kind {
             Kind::NegativeStiffness => {
-                "the stress has the wrong sign: what is strained is driven further, and the cloth tears itself apart"
+                "the stress has the wrong sign: strain drives itself further, and the cloth tears itself apart"
             }
             Kind::LowTangent if self.value < 0.0 => {
-                "stress falls as strain grows: neighbours share a load unevenly, strain runs to the end of the interval at a jump"
+                "stress falls as strain grows: neighbours share a load unevenly, and strain jumps to the end of the interval"
             }
             Kind::LowTangent => {
                 "stress hardly grows: strain drifts through the interval and solves converge slowly"
@@ -141,17 +141,17 @@ impl Finding {
                 "the stiffest strain dictates the time step, and matrices are ill-conditioned when both ends are visited"
             }
             Kind::EndSlope if self.value < 0.0 => {
-                "beyond the last control point stress falls for ever: what is strained so far is lost"
+                "beyond the last control point stress falls for ever: cloth strained that far cannot recover"
             }
-            Kind::EndSlope => "beyond the last control point hardly anything resists more strain",
+            Kind::EndSlope => "beyond the last control point hardly anything resists further strain",
             Kind::Magnitude if self.value == 0.0 => "it has no stiffness at all: nothing resists this strain",
             Kind::Magnitude if self.value < self.limit => {
-                "far too soft for a cloth, probably another unit: it hangs like nothing, or stretches without end"
+                "far too soft for a cloth, probably another unit: it folds without resistance or stretches without end"
             }
             Kind::Magnitude => {
-                "far too stiff for a cloth, probably another unit (pascals?): time steps shrink with it"
+                "far too stiff for a cloth, probably another unit (pascals?): stable time steps become tiny"
             }
-            Kind::Unvisited => "nothing was measured there: the curve is a guess",
+            Kind::Unvisited => "no measurement covers these strains: the curve is a guess",
         }
     }
 }
@@ -160,7 +160,7 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.strains;
         match high {
-            // It is of the curve as a whole.
+            // Applies to the curve as a whole.
             _ if self.kind == Kind::Magnitude => write!(f, "{}", self.kind)?,
             f64::INFINITY => write!(f, "{} from {low:.4} on", self.kind)?,
             _ => write!(f, "{} from {low:.4} to {high:.4}", self.kind)?,
@@ -172,18 +172,18 @@ impl fmt::Display for Finding {
     }
 }
 
-/// The largest and least values that the check compares.
+/// Largest and least values compared by the check.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extremes {
     /// Largest secant stiffness k from zero to the last control point.
     pub largest_stiffness: f64,
-    /// Least tangent σ′ there.
+    /// Least tangent σ′ in the same range.
     pub least_tangent: f64,
-    /// Largest tangent σ′ there.
+    /// Largest tangent σ′ in the same range.
     pub largest_tangent: f64,
 }
 
-/// The extremes of a curve between zero and its last control point.
+/// Extremes of a curve between zero and its last control point.
 pub fn extremes(curve: &StiffnessCurve) -> Extremes {
     let start = curve.stiffnesses()[0];
     let mut extremes = Extremes { largest_stiffness: start, least_tangent: start, largest_tangent: start };
@@ -196,11 +196,11 @@ pub fn extremes(curve: &StiffnessCurve) -> Extremes {
     extremes
 }
 
-/// All that is wrong with a curve or should be known of it, the worst first.
+/// All findings on a curve, worst first.
 pub fn check(curve: &StiffnessCurve, context: &Context) -> Vec<Finding> {
     let Extremes { largest_stiffness, least_tangent, largest_tangent } = extremes(curve);
     let last = curve.strains()[curve.len() - 1];
-    // Of a curve that is nowhere positive there is no scale.
+    // A curve that is nowhere positive has no scale.
     let least_allowed = LEAST_TANGENT * largest_stiffness.max(0.0);
     let low = least_allowed * (1.0 - ROUNDING);
     let mut findings = intervals(curve, Kind::NegativeStiffness, 0.0, 0.0);
@@ -224,7 +224,7 @@ pub fn check(curve: &StiffnessCurve, context: &Context) -> Vec<Finding> {
     findings
 }
 
-/// Where stiffness or tangent is below a limit.
+/// Intervals where stiffness or tangent is below a limit.
 fn intervals(curve: &StiffnessCurve, kind: Kind, below: f64, limit: f64) -> Vec<Finding> {
     let of = |piece: &Piece| if kind == Kind::NegativeStiffness { piece.stiffness } else { piece.tangent };
     let mut found = Vec::new();
@@ -232,7 +232,7 @@ fn intervals(curve: &StiffnessCurve, kind: Kind, below: f64, limit: f64) -> Vec<
     for piece in pieces(curve) {
         let cubic = of(&piece);
         for [low, high] in cubic.below(below) {
-            // Neighbouring pieces share their knot to the bit.
+            // Neighbouring pieces share their knot bit for bit.
             let strains = [piece.strain(low), piece.strain(high)];
             let least = cubic.extremes()[0].clamp(low, high);
             let value = [low, least, high].into_iter().map(|u| cubic.at(u)).fold(f64::INFINITY, f64::min);
@@ -272,7 +272,7 @@ fn unvisited(last: f64, visited: Option<[f64; 2]>) -> Vec<Finding> {
     gaps.into_iter().filter_map(gap).collect()
 }
 
-/// A segment of a curve with u = (ε − start)/width.
+/// A segment of a curve, with u = (ε − start)/width.
 struct Piece {
     start: f64,
     end: f64,

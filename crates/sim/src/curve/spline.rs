@@ -1,4 +1,5 @@
-//! The Hermite spline k(ε): which control points it can have, and its coefficients, which are linear in their values.
+//! The Hermite spline k(ε): validation of its control points, and its coefficients, which are linear in the control
+//! values.
 //!
 //! ```text
 //! k = kᵢ + mᵢ t + (3s − 2mᵢ − mᵢ₊₁)/h t² + (mᵢ + mᵢ₊₁ − 2s)/h² t³      t = ε − εᵢ,  h = εᵢ₊₁ − εᵢ,  s = (kᵢ₊₁ − kᵢ)/h
@@ -7,12 +8,12 @@
 
 use crate::error::{Error, Result};
 
-/// The largest strain and the largest stiffness without sign, and the least distance of two strains. Slopes are then at most
-/// 1e100 and cubic coefficients at most 1e201: energies, stresses and tangents stay finite.
+/// Largest strain and largest absolute stiffness; its inverse is the least distance between two strains. Slopes are
+/// then at most 1e100 and cubic coefficients at most 1e201, so energies, stresses and tangents stay finite.
 pub(super) const LARGEST: f64 = 1e50;
 const LEAST_GAP: f64 = 1e-50;
 
-/// What makes strains those of no control points.
+/// Rejects strains that no curve can have.
 pub(super) fn check_strains(strains: &[f64]) -> Result<()> {
     if strains.is_empty() {
         return Err(Error::Curve { point: 0, reason: "a curve needs at least one control point" });

@@ -1,10 +1,10 @@
-//! When stress grows with strain everywhere: linear inequalities in the control values.
+//! Stability of a curve (stress grows with strain everywhere) as linear inequalities in the control values.
 
 use super::spline::{check_strains, slope_row};
 use crate::error::Result;
 use nalgebra::DMatrix;
 
-/// Rows C with C·k ≥ κ ⇒ dσ/dε ≥ κ everywhere from zero on, and with it k ≥ 0.
+/// Rows C with C·k ≥ κ ⇒ dσ/dε ≥ κ everywhere from zero on, which implies k ≥ 0.
 ///
 /// The tangent σ′ = k + εk′ is a cubic on every segment; its Bernstein coefficients bound it from below:
 ///
@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 /// d₃ = k₁ + ε₁m₁                    d₂ = k₁ − ⅔h m₁ + ε₁[2s − (2m₀ + m₁)/3]       s = (k₁ − k₀)/h
 /// ```
 ///
-/// Two de Casteljau halvings tighten the bound (13 rows a segment): they certify 98 % of the curves that are monotone.
+/// Two de Casteljau halvings tighten the bound (13 rows per segment) and certify 98 % of monotone curves.
 ///
 /// # Errors
 /// Strains that no curve can have.
@@ -47,14 +47,14 @@ pub fn stability_rows(strains: &[f64]) -> Result<DMatrix<f64>> {
         for (index, piece) in
             [left, right].into_iter().flat_map(|half| <[_; 2]>::from(halve(half))).enumerate()
         {
-            // Neighbouring pieces share an end.
+            // Neighbouring pieces share an end point.
             rows.extend(piece.into_iter().skip(usize::from(index > 0)));
         }
     }
     Ok(DMatrix::from_fn(rows.len(), points, |i, j| rows[i][j]))
 }
 
-/// De Casteljau: the Bernstein coefficients of the two halves of a cubic.
+/// Bernstein coefficients of the two halves of a cubic (de Casteljau).
 fn halve([a, b, c, d]: [Vec<f64>; 4]) -> ([Vec<f64>; 4], [Vec<f64>; 4]) {
     let mean = |p: &[f64], q: &[f64]| -> Vec<f64> { p.iter().zip(q).map(|(p, q)| 0.5 * (p + q)).collect() };
     let [ab, bc, cd] = [mean(&a, &b), mean(&b, &c), mean(&c, &d)];
@@ -77,7 +77,7 @@ mod tests {
         let rows = stability_rows(&strains).unwrap();
         assert_eq!(rows.nrows(), 4 * 13);
         for _ in 0..4000 {
-            // Around a growing curve, so that a good share is monotone.
+            // Random values around a growing curve, so that a good share is monotone.
             let k: Vec<f64> = (0..5).map(|i| 1.0 + i as f64 + rng.random_range(-2.0..2.0)).collect();
             let curve = StiffnessCurve::new(strains.clone(), k.clone(), NegativeStrain::Odd).unwrap();
             let lowest = (0..=2000).map(|i| curve.response(i as f64 * 1e-4).tangent).fold(f64::MAX, f64::min);

@@ -1,10 +1,10 @@
-//! Triangles of a plane brought nearer to equilateral ones.
+//! Relaxation of a planar triangulation towards equilateral triangles.
 
 use nalgebra::Vector2;
 use std::collections::HashMap;
 
-/// Moves free nodes to the mean of their triangles' circumcentres by area, and turns edges until the triangles are those of
-/// Delaunay; again and again.
+/// Alternately moves free nodes to the area-weighted mean of their triangles' circumcentres and flips edges until the
+/// triangulation is Delaunay.
 ///
 /// Source: Chen and Holst 2011, centroidal patch triangulations by circumcentres; Lawson 1977, flips.
 pub(super) fn relax(
@@ -33,7 +33,7 @@ pub(super) fn relax(
     turn_edges(nodes, triangles);
 }
 
-/// The centre of the circle through three points, and twice the area of their triangle.
+/// Circumcentre of three points, and twice the area of their triangle.
 fn circumcentre(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> (Vector2<f64>, f64) {
     let [b, c] = [b - a, c - a];
     let area = b.perp(&c);
@@ -41,9 +41,9 @@ fn circumcentre(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> (Vector2<f
     (a + Vector2::new(c.y * bb - b.y * cc, b.x * cc - c.x * bb) / (2.0 * area), area)
 }
 
-/// Turns every edge whose opposite angles exceed half a turn, until there is none.
+/// Flips every edge whose opposite angles sum to more than π, until none is left.
 fn turn_edges(nodes: &[Vector2<f64>], triangles: &mut [[usize; 3]]) {
-    // Turning ends by itself; the limit is against rounding between four nodes of one circle.
+    // Flipping terminates by itself; the limit guards against rounding with four nodes on one circle.
     for _ in 0..50 {
         let mut sides: HashMap<[usize; 2], usize> = HashMap::with_capacity(3 * triangles.len());
         for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
@@ -72,7 +72,7 @@ fn turn_edges(nodes: &[Vector2<f64>], triangles: &mut [[usize; 3]]) {
     }
 }
 
-/// Minus the sine of the sum of the angles at c and d, opposite the edge a–b: above 0 beyond half a turn.
+/// Minus the sine of the sum of the angles at c and d, opposite the edge a–b: positive for sums above π.
 fn opposite_angles(nodes: &[Vector2<f64>], quad: [usize; 4]) -> f64 {
     let [a, b, c, d] = quad.map(|node| nodes[node]);
     let angle = |p: Vector2<f64>, q: Vector2<f64>| {

@@ -1,30 +1,30 @@
-//! The account of energy and work.
+//! Balance of energy and work.
 
-/// Energies of a state, and the account since the start; J.
+/// Energies of a state, and the balance since the start; J.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
-    /// ½ Σ m |v|².
+    /// Kinetic energy, ½ Σ m |v|².
     pub kinetic: f64,
-    /// Of all strains.
+    /// Elastic energy of all strains.
     pub elastic: f64,
-    /// −Σ m g·x.
+    /// Energy of the weight, −Σ m g·x.
     pub weight: f64,
-    /// What damping has taken since the start.
+    /// Energy dissipated by damping since the start.
     pub damping: f64,
-    /// What the air has done since the start; drag in still air takes.
+    /// Work of the air since the start; negative for drag in still air.
     pub wind: f64,
-    /// What the integrator has lost since the start; negative if it has gained.
+    /// Energy lost by the integrator since the start; negative for a gain.
     pub numerical: f64,
 }
 
 impl Energies {
-    /// Kinetic, elastic and weight.
+    /// Sum of kinetic, elastic and weight energy.
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.weight
     }
 }
 
-/// What air and damping did in a step, J.
+/// Work of air and damping in a step, J.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Work {
     pub(super) damping: f64,

@@ -4,7 +4,7 @@
 //! M (v₁ − v₀)/h = −∇E(x₁) − C(x₀) v₁ + B(x₀) (w − v₁)      x₁ = x₀ + h v₁
 //! ```
 //!
-//! Its solution is where the incremental potential is least: see [`Increment`].
+//! The solution minimises the incremental potential: see [`Increment`].
 
 use super::energy::Work;
 use super::settings::{LinearSolver, Newton, Settings};
@@ -20,23 +20,23 @@ use crate::linear::conjugate_gradient::ConjugateGradient;
 use crate::material::Curves;
 use nalgebra::{Matrix3, Vector3};
 
-/// Most Newton steps of one time step.
+/// Maximum number of Newton steps in a time step.
 const MAX_ITERATIONS: usize = 100;
 
 pub(super) struct ImplicitEuler<'a> {
     solver: Solver<'a>,
-    /// The terms of the step, while the solver does not have them.
+    /// Terms of the step, while the solver does not own them.
     increment: Increment,
     newton: Newton,
     /// Mass of every unknown, kg.
     masses: Vec<f64>,
     predicted: Vec<f64>,
-    /// B of every node.
+    /// B at every node.
     drag: Vec<Matrix3<f64>>,
     values: Vec<f64>,
-    /// A quantity of every coordinate.
+    /// Scratch space, one entry per coordinate.
     coordinates: Vec<f64>,
-    /// One of every unknown.
+    /// Scratch space, one entry per unknown.
     unknowns: Vec<f64>,
 }
 
@@ -88,7 +88,7 @@ impl<'a> ImplicitEuler<'a> {
         (step, work)
     }
 
-    /// The terms of a step from a state.
+    /// Prepares the terms of a step from a state.
     fn prepare(
         &mut self,
         cloth: &Cloth,
@@ -164,7 +164,7 @@ impl<'a> ImplicitEuler<'a> {
         }
     }
 
-    /// Damping takes h vᵀCv, and the air does h vᵀB(w − v).
+    /// Work in a step: damping takes h vᵀCv, the air does h vᵀB(w − v).
     fn work(&mut self, cloth: &Cloth, settings: &Settings, air: Option<Vector3<f64>>, state: &State) -> Work {
         let h = settings.step;
         let mut work = Work::default();
@@ -174,7 +174,7 @@ impl<'a> ImplicitEuler<'a> {
         if let Some(air) = air {
             for (v, drag) in state.velocities.chunks_exact(3).zip(&self.drag) {
                 let v = Vector3::from_column_slice(v);
-                // The drag's part of the matrix is no damping.
+                // The matrix contains the drag, which is not damping.
                 work.damping -= h * v.dot(&(drag * v));
                 work.wind += h * v.dot(&(drag * (air - v)));
             }

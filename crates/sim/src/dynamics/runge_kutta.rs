@@ -1,4 +1,4 @@
-//! The classical Runge–Kutta method, and the longest step at which it is stable.
+//! The classical Runge–Kutta method and its stability limit.
 
 use super::damping::Damping;
 use super::energy::Work;
@@ -13,14 +13,14 @@ use crate::material::Curves;
 use crate::sequence::irregular;
 use nalgebra::{Matrix3, Vector3};
 
-/// Where in a step the four slopes are taken, and how much each counts.
+/// Time of each of the four slopes within a step, and its weight.
 const STAGES: [(f64, f64); 4] = [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
-/// Iterations of the power method on M⁻¹K, and the change from one to the next that ends it.
+/// Maximum iterations of the power method on M⁻¹K, and the relative change at which it stops.
 const POWER_ITERATIONS: usize = 2000;
 const POWER_CHANGE: f64 = 1e-7;
 
-/// The power method finds the greatest frequency from below.
+/// The power method approaches the greatest frequency from below.
 const MARGIN: f64 = 0.99;
 
 pub(super) struct RungeKutta {
@@ -33,9 +33,9 @@ pub(super) struct RungeKutta {
     unknowns: Vec<f64>,
     free: Vec<f64>,
     product: Vec<f64>,
-    /// Slopes of position and velocity at the last stage.
+    /// Slopes of position and velocity at the current stage.
     slope: State,
-    /// Their weighted sum.
+    /// Weighted sum of the slopes.
     sum: State,
     stage: State,
 }
@@ -96,7 +96,7 @@ impl RungeKutta {
         (step, work)
     }
 
-    /// Velocity and acceleration at the stage; returns the power of damping and wind, W.
+    /// Computes velocity and acceleration at the stage; returns the power of damping and wind, W.
     fn slope_at(&mut self, cloth: &Cloth, curves: &Curves, settings: &Settings, time: f64) -> Work {
         let mut power = Work::default();
         let State { positions, velocities } = &self.stage;
@@ -145,7 +145,7 @@ fn advance(to: &mut State, from: &State, h: f64, slope: &State) {
     }
 }
 
-/// The longest step, s, at which Runge–Kutta is stable, with the curves at their stiffest; infinite without stiffness and
+/// Longest step, s, at which Runge–Kutta is stable, with every curve at its stiffest; infinite without stiffness and
 /// damping.
 ///
 /// ```text
@@ -153,10 +153,11 @@ fn advance(to: &mut State, from: &State, h: f64, slope: &State) {
 /// |1 + z + z²/2 + z³/6 + z⁴/24| ≤ 1,  z = hλ        undamped: h ≤ 2√2/ω
 /// ```
 ///
-/// K is that of the given state with the greatest tangent of every curve. Cloth that is stretched or compressed much further
-/// on its way, and drag, need shorter steps. Of StVK the frequency grows with the stretch: 0.9 of this leaves 11 % of it.
+/// K is evaluated at the given state with the greatest tangent of every curve. Drag, or much more stretch or
+/// compression during the motion, requires shorter steps. The frequency of StVK grows with stretch: a step of 0.9 times
+/// the limit allows 11 % of it.
 ///
-/// * `positions` — 3 a node, m
+/// * `positions` — 3 per node, m
 pub fn stable_step(cloth: &Cloth, curves: &Curves, positions: &[f64], damping: &Damping) -> f64 {
     let frequency = greatest_frequency(cloth, &stiffest(curves), positions) / MARGIN;
     let limit = |frequency: f64| match frequency > 0.0 {
@@ -164,11 +165,11 @@ pub fn stable_step(cloth: &Cloth, curves: &Curves, positions: &[f64], damping: &
         false if damping.mass > 0.0 => real_limit() / damping.mass,
         false => f64::INFINITY,
     };
-    // A slow mode is damped by the mass alone.
+    // A slow mode is damped by the mass term alone.
     limit(frequency).min(limit(0.0))
 }
 
-/// Every curve at its greatest tangent, whichever way it is strained.
+/// Every curve replaced by its greatest tangent, for both signs of strain.
 fn stiffest(curves: &Curves) -> Curves {
     let constant = |component| {
         let tangent = curves.get(component)?.greatest_tangent();
@@ -177,7 +178,7 @@ fn stiffest(curves: &Curves) -> Curves {
     curves.components().filter_map(constant).collect()
 }
 
-/// ω, 1/s, by the power method.
+/// Greatest ω, 1/s, by the power method.
 fn greatest_frequency(cloth: &Cloth, curves: &Curves, positions: &[f64]) -> f64 {
     let mut values = Vec::new();
     cloth.hessian(curves, positions, Curvature::Full, &mut values);
@@ -196,7 +197,7 @@ fn greatest_frequency(cloth: &Cloth, curves: &Curves, positions: &[f64]) -> f64 
         product.iter_mut().zip(&masses).for_each(|(force, mass)| *force /= mass);
         cloth.project(&mut product);
         std::mem::swap(&mut mode, &mut product);
-        // ‖M⁻¹K d‖ in the norm of the masses: the eigenvalue, once d is its vector.
+        // ‖M⁻¹K d‖ in the mass norm equals the eigenvalue once d is the eigenvector.
         let found = mode.iter().zip(&masses).map(|(d, mass)| d * d * mass).sum::<f64>().sqrt();
         if (found - square).abs() <= POWER_CHANGE * found {
             return found.sqrt();
@@ -206,7 +207,7 @@ fn greatest_frequency(cloth: &Cloth, curves: &Curves, positions: &[f64]) -> f64 
     square.sqrt()
 }
 
-/// The longest stable step of a mode, s.
+/// Longest stable step of a mode, s.
 fn longest(frequency: f64, damping: &Damping) -> f64 {
     let share = 0.5 * (damping.mass / frequency + damping.stiffness * frequency);
     let undamped = 8f64.sqrt() / frequency;
@@ -214,7 +215,7 @@ fn longest(frequency: f64, damping: &Damping) -> f64 {
         return undamped;
     }
     let stable = |h: f64| eigenvalues(frequency, share).iter().all(|&[re, im]| growth(h * re, h * im) <= 1.0);
-    // Damping lengthens the stable step a little at first, then shortens it.
+    // Damping first lengthens the stable step slightly, then shortens it.
     let (mut low, mut high) = (0.0, 1.5 * undamped);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
@@ -243,7 +244,7 @@ fn growth(re: f64, im: f64) -> f64 {
     a * a + b * b
 }
 
-/// Where the stability region ends on the negative real axis: −z of R(z) = 1.
+/// End of the stability region on the negative real axis: −z of R(z) = 1.
 fn real_limit() -> f64 {
     let (mut low, mut high) = (2.0, 3.0);
     for _ in 0..60 {

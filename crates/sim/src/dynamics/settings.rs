@@ -1,17 +1,17 @@
-//! How a cloth is moved on: the step, the integrator, and what acts on the way.
+//! Settings of the time integration: step, integrator, damping and wind.
 
 use super::damping::Damping;
 use super::wind::Wind;
 use crate::error::{Error, Result};
 
-/// How a cloth is moved on.
+/// Settings of the time integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Length of a step, s; default 0.01.
     pub step: f64,
-    /// Default implicit Euler.
+    /// Integrator; default implicit Euler.
     pub integrator: Integrator,
-    /// Default none.
+    /// Damping; default none.
     pub damping: Damping,
     /// The air; default none.
     pub wind: Option<Wind>,
@@ -25,29 +25,30 @@ impl Default for Settings {
     }
 }
 
-/// The way from one time to the next.
+/// Time integrator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Integrator {
-    /// First order, stable at any step, and lossy: motion faster than some steps dies.
+    /// First order, stable at any step, dissipative: motion faster than a few steps dies out.
     ImplicitEuler {
-        /// How the step's equation is solved.
+        /// Solver of the step's equation.
         newton: Newton,
-        /// How its linear systems are.
+        /// Solver of its linear systems.
         linear: LinearSolver,
     },
     /// Fourth order, explicit: stable up to [`stable_step`](super::stable_step).
     RungeKutta,
 }
 
-/// How an implicit step's equation is solved.
+/// Solver of an implicit step's equation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Newton {
-    /// Until the largest imbalance of a node is at most this share of the typical force or weight at a node; default 1e-6.
+    /// Iterates until the largest nodal imbalance is at most a share of the typical force or weight at a node; default
+    /// 1e-6.
     Converged {
-        /// That share.
+        /// The share.
         tolerance: f64,
     },
-    /// Linearised once, as published: faster, and neither exact nor always stable.
+    /// Linearises once, as published: faster, but neither exact nor always stable.
     Single,
 }
 
@@ -57,7 +58,7 @@ impl Default for Newton {
     }
 }
 
-/// How linear systems are solved.
+/// Solver of linear systems.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LinearSolver {
     /// Sparse Cholesky factorisation.
@@ -66,13 +67,13 @@ pub enum LinearSolver {
     ConjugateGradient {
         /// γ: stop at rᵀP⁻¹r ≤ γ² bᵀP⁻¹b; 1e-5 as published.
         tolerance: f64,
-        /// Most iterations of one system.
+        /// Maximum number of iterations per system.
         max_iterations: usize,
     },
 }
 
 impl Settings {
-    /// Every number in its range.
+    /// Checks the range of every number.
     pub(super) fn check(&self) -> Result<()> {
         let positive = |field, value: f64| match value > 0.0 && value.is_finite() {
             true => Ok(()),

@@ -1,10 +1,10 @@
 //! The state of a cloth in motion.
 
-/// Where a cloth is and how it moves.
+/// Positions and velocities of a cloth.
 #[derive(Debug, Clone)]
 pub(super) struct State {
-    /// 3 a node, m.
+    /// 3 per node, m.
     pub(super) positions: Vec<f64>,
-    /// 3 a node, m/s; zero where the cloth is held.
+    /// 3 per node, m/s; zero where the cloth is held.
     pub(super) velocities: Vec<f64>,
 }

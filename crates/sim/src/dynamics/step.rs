@@ -1,16 +1,16 @@
-//! How a step ended.
+//! Outcome of a time step.
 
 use crate::equilibrium::Remedies;
 
-/// How a step ended.
+/// Status of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// As it should.
+    /// Completed.
     Done,
-    /// Its equation is not solved to the tolerance, and the best state is taken; or an explicit integrator has made energy
-    /// out of nothing, as it does where the cloth has become too stiff for its step.
+    /// The step's equation was not solved to the tolerance, and the best state is kept; or an explicit integrator
+    /// gained energy, because the cloth has become too stiff for its step.
     NotConverged,
-    /// It led to numbers that are not finite: nothing has moved.
+    /// The step led to non-finite numbers; nothing has moved.
     NotFinite,
 }
 
@@ -18,16 +18,16 @@ pub enum Status {
 #[must_use]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// How it ended.
+    /// Status of the step.
     pub status: Status,
-    /// Newton steps; 0 of an explicit integrator.
+    /// Newton steps; 0 for an explicit integrator.
     pub newton_iterations: usize,
-    /// Iterations of conjugate gradients.
+    /// Conjugate gradient iterations.
     pub linear_iterations: usize,
-    /// Factorisations.
+    /// Number of factorisations.
     pub factorisations: usize,
-    /// Largest imbalance of a node in the step's equation, N; 0 of an explicit integrator and of a linearised step.
+    /// Largest imbalance of a node in the step's equation, N; 0 for an explicit integrator and for a linearised step.
     pub imbalance: f64,
-    /// What was done beside plain Newton steps.
+    /// Numerical interventions.
     pub remedies: Remedies,
 }

@@ -1,4 +1,4 @@
-//! The air: wind, and the drag of cloth that moves through it.
+//! The air: wind, and drag on moving cloth.
 
 use super::state::State;
 use crate::cloth::Cloth;
@@ -6,7 +6,7 @@ use crate::element::gather;
 use crate::error::{Error, Result};
 use nalgebra::{Matrix3, Vector3};
 
-/// Air that moves, and how cloth feels it.
+/// Moving air and its drag on cloth.
 ///
 /// ```text
 /// w(t) = velocity + gust sin(2π t / gust_period)
@@ -14,26 +14,26 @@ use nalgebra::{Matrix3, Vector3};
 /// B = (A/3) ½ρ [ c_n |u·n| n nᵀ + c_t |u| (I − n nᵀ) ]      u = w − v of the triangle's middle, n its normal
 /// ```
 ///
-/// Pressure and friction grow with the square of the speed. Within a step B is that of its start, so that still air always
+/// Pressure and friction grow with the square of the speed. B is evaluated at the start of a step, so still air always
 /// takes energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wind {
-    /// m/s.
+    /// Mean velocity, m/s.
     pub velocity: Vector3<f64>,
-    /// Amplitude, m/s; zero for steady wind.
+    /// Gust amplitude, m/s; zero for steady wind.
     pub gust: Vector3<f64>,
-    /// s.
+    /// Gust period, s.
     pub gust_period: f64,
-    /// ρ, kg/m³; 1.2 at 20 °C.
+    /// Density ρ, kg/m³; 1.2 at 20 °C.
     pub density: f64,
-    /// c_n, of a plate across the wind about 1.2 (Hoerner 1965).
+    /// c_n; about 1.2 for a plate across the wind (Hoerner 1965).
     pub normal_drag: f64,
-    /// c_t, of a plate along the wind a few hundredths.
+    /// c_t; a few hundredths for a plate along the wind.
     pub tangential_drag: f64,
 }
 
 impl Default for Wind {
-    /// Still air.
+    /// Air at rest.
     fn default() -> Self {
         Self {
             velocity: Vector3::zeros(),
@@ -47,12 +47,12 @@ impl Default for Wind {
 }
 
 impl Wind {
-    /// The air's velocity at a time (s), m/s.
+    /// Velocity of the air at a time (s), m/s.
     pub fn at(&self, time: f64) -> Vector3<f64> {
         self.velocity + self.gust * (std::f64::consts::TAU * time / self.gust_period).sin()
     }
 
-    /// B of every node, kg/s.
+    /// Computes B at every node, kg/s.
     pub(super) fn drag(&self, cloth: &Cloth, state: &State, air: Vector3<f64>, drag: &mut Vec<Matrix3<f64>>) {
         drag.clear();
         drag.resize(cloth.nodes(), Matrix3::zeros());

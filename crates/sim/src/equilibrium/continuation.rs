@@ -1,12 +1,12 @@
-//! Where the start is too far away: solve with a much softer membrane, or a much stiffer one, and change it step by step.
+//! Continuation for poor starts: solves with a much softer or stiffer membrane and restores the stiffness stepwise.
 //!
 //! ```text
 //! k/1000 → k/100 → k/10 → k        each from where the last one ended
 //! ```
 //!
-//! A sheet that hardly stretches bends alike whatever its membrane: a soft one finds the shape, where a stiff one has to follow
-//! a narrow curved valley from flat, and every further solve takes a few steps. A stiffer one helps where the sheet stretches
-//! to many times its length.
+//! A nearly inextensible sheet bends alike for any membrane stiffness. A soft membrane finds the shape, where a stiff
+//! one has to follow a narrow curved valley from flat; every further solve takes a few steps. A stiffer membrane helps
+//! where the sheet stretches to many times its length.
 //!
 //! Source: numerical continuation, Allgower and Georg 1990.
 
@@ -15,12 +15,13 @@ use super::settings::Settings;
 use super::solver::Solver;
 use crate::material::Curves;
 
-/// The powers of ten that the membrane's stiffness is first multiplied by, until one leads to a balance.
+/// Powers of ten by which the membrane's stiffness is first multiplied; tried in turn until one leads to a balanced
+/// state.
 const FIRST: [i32; 4] = [-3, -6, 3, 6];
 
 impl Solver<'_> {
-    /// Starts anew from other membranes. Where that comes to a balance, `x` and `found` are that; otherwise they stay. The
-    /// counters count on.
+    /// Restarts from other membranes. On success, `x` and `found` are the balanced state; otherwise they are unchanged.
+    /// Counters accumulate.
     pub(super) fn continue_from_others(
         &mut self,
         curves: &Curves,
@@ -50,7 +51,7 @@ impl Solver<'_> {
     }
 }
 
-/// The curves with the membrane's stiffnesses times a factor.
+/// Curves with the membrane's stiffnesses multiplied by a factor.
 fn scaled(curves: &Curves, factor: f64) -> Option<Curves> {
     let mut scaled = curves.clone();
     for component in curves.components().filter(|component| !component.is_bending()) {

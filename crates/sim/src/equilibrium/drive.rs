@@ -1,4 +1,4 @@
-//! Load steps: what holds the cloth moves far, and the cloth follows in as few steps as that takes.
+//! Load steps: held nodes move far, and the cloth follows in as few steps as possible.
 
 use super::outcome::{Equilibrium, Status};
 use super::settings::Settings;
@@ -9,32 +9,33 @@ use crate::rigid::nearest_rotation;
 use nalgebra::{Rotation3, Vector3};
 use std::collections::BTreeMap;
 
-/// A step that is not balanced after so many iterations was too long.
+/// A step that is not balanced after this many iterations was too long.
 const ITERATIONS: usize = 40;
 
-/// The shortest step, as a share of the whole way.
+/// Shortest step, as a share of the whole motion.
 const SHORTEST: f64 = 1.0 / 256.0;
 
-/// How far the held nodes are moved, as a share of the mean edge, to see which forces that causes.
+/// Displacement of the held nodes, as a share of the mean edge, that probes the resulting forces.
 const PROBE: f64 = 1e-6;
 
 impl Solver<'_> {
-    /// Follows an equilibrium while what holds it moves.
+    /// Follows an equilibrium while the held nodes move.
     ///
-    /// The first step is the whole way. One that does not end in balance within 40 iterations is halved, and so is one
-    /// in which a hinge jumps across half a turn or, in the plane, a triangle turns over; after a success the next is
-    /// twice as long. Every step starts from −K⁻¹ K_h Δx_h, the first-order answer of the free nodes to the motion Δx_h
-    /// of the held ones. Every clip moves rigidly as far as it can: it turns as steadily as it travels.
+    /// The first step is the whole motion. A step is halved if it is not balanced within 40 iterations, if a hinge
+    /// jumps across half a turn or, in planar problems, if a triangle flips; after a success the step doubles. Every
+    /// step starts from −K⁻¹ K_h Δx_h, the first-order response of the free nodes to the motion Δx_h of the held ones.
+    /// Every clip moves as rigidly as possible, with proportional rotation and translation.
     ///
-    /// * `x` — as for [`Solver::solve`]; near an equilibrium for where its held nodes are now
-    /// * `target` — where the held nodes shall be, 3 stacked coordinates a node, m; those of free nodes are ignored
+    /// * `x` — as for [`Solver::solve`]; near an equilibrium for the present positions of its held nodes
+    /// * `target` — target positions of the held nodes, 3 stacked coordinates per node, m; entries of free nodes are
+    ///   ignored
     ///
-    /// Where a step of 1/256 of the way fails too, `x` is the last balanced state on the way, the status says how the
-    /// last step failed, and the other figures are those of `x`. The counters include all steps, and the steps may
-    /// leave unstable states as a solve may.
+    /// If a step of 1/256 of the motion fails too, `x` is the last balanced state on the way and the status that of the
+    /// failed step; the other figures are those of `x`. The counters include all steps. The steps leave unstable states
+    /// as a solve does.
     ///
     /// # Panics
-    /// If `x` or `target` has another length than the cloth has coordinates.
+    /// If the length of `x` or `target` differs from the cloth's number of coordinates.
     pub fn drive(
         &mut self,
         curves: &Curves,
@@ -42,7 +43,7 @@ impl Solver<'_> {
         target: &[f64],
         settings: &Settings,
     ) -> Equilibrium {
-        assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates a node");
+        assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates per node");
         if let Some(refused) = self.refused(x) {
             return refused;
         }
@@ -89,8 +90,8 @@ impl Solver<'_> {
         }
     }
 
-    /// Moves the free nodes of a state whose held nodes have moved away from `x`, to first order. The gradient and the
-    /// factor are those of `x`. The strains that this step predicts are kept for the first matrix.
+    /// Moves the free nodes of a state, whose held nodes have moved away from `x`, to first order. Gradient and factor
+    /// are those of `x`. The strains predicted by this step are kept for the first matrix.
     fn predict(&mut self, curves: &Curves, x: &[f64], state: &mut [f64]) {
         self.step.iter_mut().zip(state.iter().zip(x)).for_each(|(d, (to, from))| *d = to - from);
         let farthest = self.step.iter().fold(0.0, |largest: f64, d| largest.max(d.abs()));
@@ -108,28 +109,28 @@ impl Solver<'_> {
     }
 }
 
-/// The motion of the nodes that one clip holds: rigid, and what that leaves over.
+/// Motion of the nodes held by one clip: a rigid part and a remainder.
 struct Motion {
-    /// Where the middle is at the start, m.
+    /// Centre at the start, m.
     middle: Vector3<f64>,
-    /// Where it goes from there, m.
+    /// Displacement of the centre, m.
     travel: Vector3<f64>,
-    /// Axis times angle, rad.
+    /// Rotation, axis times angle, rad.
     turn: Vector3<f64>,
     nodes: Vec<Follower>,
 }
 
-/// A node that follows a clip, m.
+/// A node held by a clip, m.
 struct Follower {
     node: usize,
-    /// From the clip's middle at the start.
+    /// Vector from the clip's centre to the node at the start.
     arm: Vector3<f64>,
-    /// From where the clip takes it to where it shall be.
+    /// Displacement from the rigidly moved position to the target.
     rest: Vector3<f64>,
     target: Vector3<f64>,
 }
 
-/// The motions of all clips, and one of what is held by none.
+/// Motions of all clips, and one for the nodes held without a clip.
 fn motions(cloth: &Cloth, x: &[f64], target: &[f64]) -> Vec<Motion> {
     let mut free = vec![false; cloth.nodes()];
     cloth.free_coordinates().iter().for_each(|(coordinate, _)| free[coordinate / 3] = true);
@@ -156,7 +157,7 @@ impl Motion {
         Self { middle, travel: end - middle, turn, nodes }
     }
 
-    /// Puts the nodes where they are after a share of the way.
+    /// Places the nodes at a share of the motion.
     fn place(&self, share: f64, x: &mut [f64]) {
         let rotation = Rotation3::new(self.turn * share);
         for &Follower { node, arm, rest, target } in &self.nodes {
@@ -171,7 +172,7 @@ impl Motion {
 mod tests {
     use super::*;
 
-    /// The distances between nodes at several shares of the way, against those at rest.
+    /// Checks the distances between nodes at several shares of the motion against those at rest.
     fn keeps_its_size(start: &[f64], turn: Vector3<f64>) {
         let nodes: Vec<usize> = (0..start.len() / 3).collect();
         let at = |x: &[f64], node: usize| Vector3::from_column_slice(&x[3 * node..3 * node + 3]);

@@ -1,4 +1,4 @@
-//! Leaving a balanced state that is not stable.
+//! Escape from an unstable equilibrium.
 //!
 //! ```text
 //!       ╭─╮            from the hilltop a small way down on both sides along the direction of most negative
@@ -10,25 +10,25 @@ use super::settings::Settings;
 use super::solver::{SINGULAR, Solver};
 use crate::material::Curves;
 
-/// How far the node that moves most is moved, as a share of the mean edge: far beyond rounding, and too little for a
-/// triangle or hinge to turn over.
+/// Displacement of the node that moves most, as a share of the mean edge: far above rounding, but too small for a
+/// triangle or hinge to flip.
 const STEP: f64 = 1e-2;
 
-/// The step is doubled so often at most, while the energy falls: to two and a half edges.
+/// Maximum number of doublings of the step while the energy falls: up to two and a half edges.
 const DOUBLINGS: u32 = 8;
 
-/// The second side is taken where its energy falls by this share more than that of the first: the two sides of a
-/// symmetric problem are equal but for rounding, which must not decide.
+/// The second side wins if its energy falls by this share more than that of the first. The two sides of a symmetric
+/// problem differ by rounding only, which must not decide.
 const TIE: f64 = 1e-6;
 
-/// An energy lower by less than this share of it is lower by rounding.
+/// A decrease of the energy below this share of it is rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// So many unstable states in a row are left.
+/// Maximum number of consecutive unstable states to leave.
 const ESCAPES: usize = 6;
 
 impl Solver<'_> {
-    /// A solve whose first matrix uses the strains in `mixed`, if there are any.
+    /// Solves; the first matrix uses the strains in `mixed`, if there are any.
     pub(super) fn settle(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let mut found = self.minimise(curves, x, settings);
@@ -43,8 +43,8 @@ impl Solver<'_> {
         Equilibrium { factorisations, remedies, ..found }
     }
 
-    /// Moves from an unstable balance to a balanced state of lower energy, if there is one; `found` then describes
-    /// that. The counters count on; the solver's state belongs to `x` again.
+    /// Moves from an unstable equilibrium to a balanced state of lower energy, if there is one, and describes it in
+    /// `found`. Counters accumulate; the solver's state belongs to `x` again.
     fn leave(
         &mut self,
         curves: &Curves,
@@ -74,8 +74,8 @@ impl Solver<'_> {
         left
     }
 
-    /// The lowest state along a direction, in steps that double: a mode that is hardly unstable has so little force that a
-    /// single step, or many, would still count as balanced.
+    /// Lowest state along a direction, in doubling steps: a mode that is barely unstable has so little force that one
+    /// step, or many, would still count as balanced.
     fn downhill(&mut self, curves: &Curves, origin: &[f64], direction: &[f64], side: f64) -> Vec<f64> {
         let moved = |length: f64| -> Vec<f64> {
             origin.iter().zip(direction).map(|(x, d)| x + side * length * d).collect()
@@ -93,11 +93,11 @@ impl Solver<'_> {
         best
     }
 
-    /// The direction of most negative curvature, as long as the step to take along it; `None` if no curvature is
-    /// negative beyond rounding. Needs the shifted factor of the true Hessian.
+    /// Direction of most negative curvature, scaled to the length of the step; `None` if no curvature is negative
+    /// beyond rounding. Needs the shifted factor of the true Hessian.
     fn way_down(&mut self) -> Option<Vec<f64>> {
         let curvature = self.linear.softest(self.cloth.pattern(), self.shift, &mut self.reduced);
-        // Written so that a NaN has no direction either.
+        // Negated to reject NaN.
         if !(curvature < -SINGULAR * self.mean_diagonal()) {
             return None;
         }

@@ -1,6 +1,6 @@
-//! Additive Levenberg–Marquardt: the published method, and the last resort of ours.
+//! Additive Levenberg–Marquardt: the published method, used here as a fallback.
 //!
-//! Source: Miguel et al. 2012, §5.1; how μ is chosen is ours.
+//! Source: Miguel et al. 2012, §5.1; the choice of μ is specific to this project.
 
 use super::newton::DAMPING;
 use super::outcome::Status;
@@ -10,7 +10,7 @@ use crate::element::Curvature;
 use crate::material::Curves;
 
 impl Solver<'_> {
-    /// (K + μI) d = −g with μ a tenth after each success, ten times after each failure.
+    /// Iterates (K + μI) d = −g; μ falls to a tenth after each success and rises tenfold after each failure.
     pub(super) fn levenberg_marquardt(
         &mut self,
         curves: &Curves,
@@ -19,7 +19,7 @@ impl Solver<'_> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
-        // Before the first step there is no μ, whatever a former solve has left.
+        // The first step starts without μ, whatever an earlier solve has left.
         self.shift = 0.0;
         let mut shift = None;
         while *iterations < settings.max_iterations {
@@ -32,7 +32,7 @@ impl Solver<'_> {
             let norm = self.cloth.norm(&self.gradient);
             *iterations += 1;
             loop {
-                // Written so that a NaN stops it too.
+                // Negated to stop at NaN.
                 if !(damping <= 1e9 * mean) {
                     return Status::Stalled;
                 }
@@ -54,7 +54,8 @@ impl Solver<'_> {
         if self.is_balanced(x, settings) { Status::Converged } else { Status::IterationLimit }
     }
 
-    /// The true matrix + μI with the μ of the last step; ten times more, and so on, where it is not positive definite.
+    /// Factorises the true matrix + μI with μ of the last step, increased tenfold until the matrix is positive
+    /// definite.
     pub(super) fn factorise_damped(&mut self, curves: &Curves, x: &[f64]) {
         let last = self.shift;
         self.assemble(curves, x, Curvature::Full);

@@ -1,4 +1,4 @@
-//! A balanced state downhill: by Newton's method, and where that comes to nothing by Levenberg–Marquardt.
+//! Minimisation: Newton's method, with Levenberg–Marquardt as a fallback.
 
 use super::outcome::{Equilibrium, Status};
 use super::settings::{Method, Settings};
@@ -6,14 +6,15 @@ use super::solver::Solver;
 use crate::material::Curves;
 
 impl Solver<'_> {
-    /// A balanced state downhill, stable or not.
+    /// Descends to a balanced state, stable or not.
     pub(super) fn minimise(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
         let (before, remedies) = (self.linear.factorisations(), self.remedies);
         let mut iterations = 0;
         self.damping = 0.0;
         self.clamped = 0;
         let mut energy = self.evaluate(curves, x);
-        // An angle at a collapsed wing has a finite energy and forces that are not, on held nodes only if all are held.
+        // An angle at a collapsed wing has finite energy but non-finite forces; these act on held nodes only if all are
+        // held.
         let finite = energy.is_finite()
             && self.gradient.iter().all(|force| force.is_finite())
             && self.cloth.norm(&self.gradient).is_finite();
@@ -27,7 +28,7 @@ impl Solver<'_> {
         }
         match settings.method {
             _ if status == Status::NotFinite => (),
-            // A time step is no place to rest in: whether it is stable does not matter.
+            // The stability of a time step does not matter.
             _ if self.increment.is_some() => (),
             Method::LevenbergMarquardt => self.factorise_damped(curves, x),
             Method::MixedNewton => {

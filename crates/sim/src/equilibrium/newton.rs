@@ -1,4 +1,4 @@
-//! Newton's method with the matrix of the strains that the last step predicted.
+//! Newton's method with the matrix at the strains predicted by the last step.
 //!
 //! ```text
 //! K̂ d = −g      K̂ = σ′(ε) ∇ε ∇εᵀ + σ(ε*) ∇²ε      ε* = ε + ∇ε·Δx before the last step Δx
@@ -10,29 +10,29 @@ use super::solver::{Solver, shifts};
 use crate::element::Curvature;
 use crate::material::Curves;
 
-/// An energy may rise by this many times |g·d| in a full step: the mixed matrix overshoots stretch on purpose and takes
-/// it back in the next step. A stiff cantilever (stretch : bending = 1e9) from flat needs 28 steps with 1e3, 92 with 20.
+/// A full step may raise the energy by this many times |g·d|: the mixed matrix overshoots stretch on purpose, and the
+/// next step takes it back. A stiff cantilever (stretch : bending = 1e9) from flat needs 28 steps with 1e3, 92 with 20.
 const NONMONOTONE: f64 = 1e3;
 
-/// After so many steps the energy must fall in each: no cycling.
+/// After this many steps the energy must fall in each, to prevent cycling.
 pub(super) const NONMONOTONE_STEPS: usize = 40;
 
-/// A factor is used again while each step with it leaves less than this share of the imbalance. Warm cantilevers need 3.0
-/// factorisations with 0.5, 3.7 with 0.25; picture frames 5.0 and 6.0.
+/// A factor is reused while each step with it leaves less than this share of the imbalance. Warm cantilevers need 3.0
+/// factorisations with 0.5 and 3.7 with 0.25; picture frames 5.0 and 6.0.
 const CHORD_CONTRACTION: f64 = 0.5;
 
-/// So many matrices that are not positive definite are clamped, element by element, which takes out the spurious stress of
-/// a poor start.
+/// Number of indefinite matrices that are clamped, element by element, which removes the spurious stress of a poor
+/// start.
 const CLAMPED_STEPS: usize = 2;
 
-/// Further ones are damped, as where a sheet is about to buckle: clamping would stiffen the way into the buckle a
-/// hundredfold. μ, as a share of the mean of the diagonal, falls to a tenth from step to step, and below the least to
-/// nothing. Levenberg–Marquardt starts with it too.
+/// Later indefinite matrices are damped, as in a sheet about to buckle: clamping would stiffen the path into the buckle
+/// a hundredfold. μ, as a share of the mean diagonal, falls to a tenth from step to step, and to zero below
+/// `LEAST_DAMPING`. Levenberg–Marquardt also starts with it.
 pub(super) const DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 2e-6;
 
 impl Solver<'_> {
-    /// Steps down to a balanced state; `Stalled` where no step is acceptable.
+    /// Steps down to a balanced state; `Stalled` if no step is acceptable.
     pub(super) fn mixed_newton(
         &mut self,
         curves: &Curves,
@@ -41,11 +41,12 @@ impl Solver<'_> {
         energy: &mut f64,
         iterations: &mut usize,
     ) -> Status {
-        // A time step is predicted so well that forces too small to count would never be answered, and add up.
+        // A time step takes at least one iteration: its prediction is so good that forces below the tolerance would
+        // otherwise never be corrected, and would accumulate.
         let (mut lowest, mut best) = (*energy, x.to_vec());
         while (self.increment.is_some() && *iterations == 0) || !self.is_balanced(x, settings) {
             if *iterations >= settings.max_iterations {
-                // The energy may have risen on the way.
+                // The energy may have risen in between.
                 if lowest < *energy {
                     x.copy_from_slice(&best);
                     *energy = self.evaluate(curves, x);
@@ -67,7 +68,7 @@ impl Solver<'_> {
         Status::Converged
     }
 
-    /// Goes on with the last step's factor, if there is one, for as long as that pays: a solve and a gradient cost about a
+    /// Continues with the factor of the last step, if there is one, while it pays: a solve and a gradient cost about a
     /// sixth of a new factor.
     fn chord_steps(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings, energy: &mut f64) {
         while self.is_direct() && self.contraction < CHORD_CONTRACTION && !self.is_balanced(x, settings) {
@@ -82,8 +83,8 @@ impl Solver<'_> {
         }
     }
 
-    /// The direction of the mixed matrix; where that is not positive definite, of the clamped one, and after some of these of
-    /// the damped one first. Returns its slope g·d.
+    /// Computes the direction of the mixed matrix. If that is not positive definite, uses the clamped matrix; after
+    /// `CLAMPED_STEPS` of these, tries the damped one first. Returns the slope g·d.
     fn newton_direction(&mut self, curves: &Curves, x: &[f64]) -> Option<f64> {
         self.assemble_mixed(curves, x);
         let mean = self.mean_diagonal();
@@ -102,14 +103,14 @@ impl Solver<'_> {
         }
         self.assemble(curves, x, Curvature::Clamped);
         self.remedies.clamped += 1;
-        // A clamped matrix may still be singular, as where nothing but bending holds a flat sheet.
+        // A clamped matrix may still be singular, for example if nothing but bending holds a flat sheet.
         let shifts = shifts(self.mean_diagonal());
         let slope = std::iter::once(0.0).chain(shifts).find_map(|shift| self.direction_of(shift));
         self.remedies.damped += usize::from(self.shift > 0.0);
         slope
     }
 
-    /// Moves along the step, halved until it is acceptable.
+    /// Moves along the step, which is halved until it is acceptable.
     fn line_search(
         &mut self,
         curves: &Curves,
@@ -131,7 +132,8 @@ impl Solver<'_> {
             } else {
                 trial_energy <= *energy + 1e-4 * length * slope
             };
-            // Near the end energy differences drown in rounding: the imbalance decides, of a careful step within that.
+            // Near the end, energy differences drown in rounding: the imbalance decides, and a careful step must also
+            // not raise the energy beyond rounding.
             let contraction = self.cloth.norm(&self.trial_gradient) / norm;
             if contraction.is_finite()
                 && (acceptable

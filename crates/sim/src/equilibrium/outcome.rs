@@ -1,22 +1,23 @@
-//! How a solve ended.
+//! Outcome of a solve.
 
 use super::remedies::Remedies;
 
-/// How a solve ended.
+/// Status of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Status {
     /// A stable equilibrium; with Levenberg–Marquardt, any equilibrium.
     Converged,
-    /// Balanced, but the stiffness matrix is not positive definite: the cloth would leave this state at a touch.
+    /// Balanced, but the stiffness matrix is not positive definite: the smallest disturbance makes the cloth leave this
+    /// state.
     Unstable,
-    /// The iterations ran out.
+    /// The iteration limit was reached.
     IterationLimit,
-    /// No step made it better.
+    /// No step reduced the imbalance.
     Stalled,
     /// The start, or the curves there, are not finite.
     NotFinite,
-    /// Tied groups are not parallel at the start, beyond a millionth of an edge: elements between them that are computed once
-    /// for all would not be alike. So it is, by rounding, in a state thrown far away.
+    /// Tied groups are not parallel at the start, beyond a millionth of an edge: the elements between them would differ
+    /// from their single representative. Rounding causes this in a state with very large coordinates.
     NotParallel,
 }
 
@@ -26,19 +27,19 @@ impl std::fmt::Display for Status {
             Self::Converged => "converged",
             Self::Unstable => "balanced but unstable",
             Self::IterationLimit => "the iterations ran out",
-            Self::Stalled => "no step made the imbalance smaller",
+            Self::Stalled => "no step reduced the imbalance",
             Self::NotFinite => "the start is not finite",
             Self::NotParallel => "tied groups of nodes are not parallel at the start",
         })
     }
 }
 
-/// What decided that a state is balanced.
+/// Limit that decided whether a state is balanced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Limit {
-    /// The tolerance asked for.
+    /// The requested tolerance.
     Tolerance,
-    /// Rounding: forces cannot be computed more exactly at these coordinates.
+    /// Rounding: forces cannot be computed more accurately at these coordinates.
     Rounding,
 }
 
@@ -46,29 +47,29 @@ pub enum Limit {
 #[must_use]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equilibrium {
-    /// How it ended.
+    /// Status of the solve.
     pub status: Status,
-    /// An unstable balance was met and left: the cloth bifurcates near here, so that another shape, and other
-    /// sensitivities, are as good.
+    /// True if an unstable equilibrium was met and left: the cloth bifurcates nearby, and another shape with other
+    /// sensitivities is equally valid.
     pub escaped: bool,
-    /// Which limit the imbalance is measured against.
+    /// The limit against which the imbalance is measured.
     pub limit: Limit,
     /// Total energy, J.
     pub energy: f64,
     /// Largest imbalance of a free node, N (with an absolute tolerance: the norm over all).
     pub imbalance: f64,
-    /// What it had to come below, N.
+    /// Limit on the imbalance, N.
     pub tolerance: f64,
-    /// Newton steps taken, on all sides of states that were left.
+    /// Newton steps, including those on both sides of states that were left.
     pub iterations: usize,
-    /// Factorisations made, those that check stability included.
+    /// Factorisations, including stability checks.
     pub factorisations: usize,
-    /// What was done beside plain Newton steps.
+    /// Numerical interventions.
     pub remedies: Remedies,
 }
 
 impl Equilibrium {
-    /// A stable equilibrium was found.
+    /// True if a stable equilibrium was found.
     pub fn converged(&self) -> bool {
         self.status == Status::Converged
     }

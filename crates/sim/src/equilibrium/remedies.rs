@@ -1,36 +1,35 @@
-//! What a solve did beside plain Newton steps, counted: nothing is mended in silence. None of it changes what counts as
-//! balanced.
+//! Numerical interventions of a solve. Each is counted and reported; none changes the criterion for equilibrium.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{AddAssign, Sub};
 
-/// How often a solve, or several, helped themselves.
+/// Counts of the numerical interventions in one or several solves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Remedies {
-    /// Matrices that were not positive definite, and whose geometric part was clamped element by element.
+    /// Clamped matrices: not positive definite, geometric part clamped element by element.
     pub clamped: usize,
-    /// Matrices that were not positive definite, or had not been shortly before, and to which μI was added.
+    /// Damped matrices: not positive definite, or shortly after one that was not, with μI added.
     pub damped: usize,
-    /// Minimisations that Newton's method could not finish and Levenberg–Marquardt went on with.
+    /// Minimisations that Newton's method could not finish and Levenberg–Marquardt continued.
     pub levenberg_marquardt: usize,
-    /// Balances that were not stable, and were left for a lower one beside them.
+    /// Unstable equilibria left for a lower state beside them.
     pub escapes: usize,
-    /// Solves that came to nothing, and were begun anew with a softer or stiffer membrane.
+    /// Failed solves restarted with a softer or stiffer membrane.
     pub continued: usize,
-    /// Time steps that were begun anew, downhill all the way.
+    /// Time steps restarted with the energy falling in every iteration.
     pub careful: usize,
-    /// Load steps that were too long, and were halved.
+    /// Load steps that were too long and were halved.
     pub halved: usize,
 }
 
 impl Remedies {
-    /// True if nothing was needed.
+    /// True if no intervention was needed.
     pub fn none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The same figures by two rules, field by field.
+    /// Combines two counts field by field.
     fn by_fields(self, other: Self, rule: impl Fn(usize, usize) -> usize) -> Self {
         Self {
             clamped: rule(self.clamped, other.clamped),

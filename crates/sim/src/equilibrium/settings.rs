@@ -1,14 +1,14 @@
-//! How equilibria are found, and when a state counts as balanced.
+//! Settings of an equilibrium solve, and the criterion for equilibrium.
 
-/// How equilibria are found.
+/// Settings of an equilibrium solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// The method; default mixed Newton.
+    /// Minimisation method; default mixed Newton.
     pub method: Method,
-    /// When a state counts as balanced.
+    /// Criterion for a balanced state.
     pub tolerance: Tolerance,
-    /// Most iterations of one minimisation; default 200. Leaving an unstable state is two more of them, and where they run
-    /// out, starting anew from a softer or stiffer membrane is four or more.
+    /// Maximum iterations of one minimisation; default 200. Leaving an unstable state takes two more minimisations. If
+    /// the iterations run out, a restart from a softer or stiffer membrane takes at least four.
     pub max_iterations: usize,
     /// Leave an unstable state for one of lower energy; default true.
     pub escape: bool,
@@ -25,23 +25,23 @@ impl Default for Settings {
     }
 }
 
-/// The iteration.
+/// Minimisation method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// Mixed Newton, Levenberg–Marquardt if that comes to nothing.
+    /// Mixed Newton, with Levenberg–Marquardt as a fallback.
     MixedNewton,
-    /// The full Hessian + μI throughout, for the sensitivities too, as published. Stability is not checked: what is balanced
-    /// has converged.
+    /// The full Hessian + μI throughout, also for the sensitivities, as published. Stability is not checked: a balanced
+    /// state counts as converged.
     ///
-    /// Source: Miguel et al. 2012, §5.1; how μ is chosen is ours.
+    /// Source: Miguel et al. 2012, §5.1; the choice of μ is specific to this project.
     LevenbergMarquardt,
 }
 
-/// When a state counts as balanced.
+/// Criterion for a balanced state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tolerance {
-    /// Largest imbalance of a node at most this share of the typical force or weight at a node.
+    /// Largest nodal imbalance at most this share of the typical force or weight at a node.
     Relative(f64),
-    /// Norm of all imbalances at most this, N; 10 µN as published.
+    /// Norm of all imbalances at most this value, N; 10 µN as published.
     Absolute(f64),
 }

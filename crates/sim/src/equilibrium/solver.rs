@@ -1,4 +1,4 @@
-//! The state of a solve: the energy's derivatives there, the factor, and the steps that all methods are made of.
+//! State of a solve: energy derivatives, the factor, and the steps shared by all methods.
 
 use super::outcome::{Equilibrium, Limit, Status};
 use super::remedies::Remedies;
@@ -11,14 +11,14 @@ use crate::linear::cholesky::Factor;
 use crate::material::Curves;
 use nalgebra::Vector3;
 
-/// A stiffness below this share of the mean is one of rounding: the matrix is singular.
+/// Below this share of the mean, a stiffness is rounding and the matrix is singular.
 pub(super) const SINGULAR: f64 = 1e-14;
 
-/// The memory that finding equilibria of one cloth needs. One a thread.
+/// Memory for finding equilibria of one cloth. One per thread.
 pub struct Solver<'a> {
     pub(super) cloth: &'a Cloth,
     pub(super) linear: Linear,
-    /// What a time step adds to the energy.
+    /// Terms that a time step adds to the energy.
     pub(crate) increment: Option<Increment>,
     values: Vec<f64>,
     pub(super) gradient: Vec<f64>,
@@ -28,32 +28,32 @@ pub struct Solver<'a> {
     pub(super) trial_gradient: Vec<f64>,
     trial_scale: ForceScale,
     pub(super) reduced: Vec<f64>,
-    /// The gradient, summed over each unknown.
+    /// Gradient summed over each unknown.
     forces: Vec<f64>,
     pub(super) mixed: Vec<f64>,
-    /// Imbalance after the last accepted step over that before.
+    /// Imbalance after the last accepted step over that before it.
     pub(super) contraction: f64,
-    /// μ of the factor, N/m: it is that of the matrix + μI.
+    /// μ of the factor, N/m: the matrix + μI was factorised.
     pub(super) shift: f64,
-    /// μ of the next Newton matrix, as a share of the mean of its diagonal.
+    /// μ of the next Newton matrix, as a share of its mean diagonal.
     pub(super) damping: f64,
-    /// Newton matrices that were not positive definite, in this minimisation.
+    /// Newton matrices of this minimisation that were not positive definite.
     pub(super) clamped: usize,
-    /// Downhill in every step, with the full Hessian or the clamped one.
+    /// The energy must fall in every step, with the full or the clamped Hessian.
     pub(super) careful: bool,
-    /// Where a time step starts.
+    /// Start of a time step.
     pub(super) before: Vec<f64>,
-    /// All that was done beside plain Newton steps, in every solve so far.
+    /// Numerical interventions of all solves so far.
     pub(super) remedies: Remedies,
 }
 
 impl<'a> Solver<'a> {
-    /// Memory for one cloth.
+    /// Allocates for one cloth.
     pub fn new(cloth: &'a Cloth) -> Self {
         Self::with(cloth, Linear::Direct(Factor::new(cloth.pattern())))
     }
 
-    /// The same with another way to solve linear systems.
+    /// Allocates with a given linear solver.
     pub(crate) fn with(cloth: &'a Cloth, linear: Linear) -> Self {
         let coordinates = 3 * cloth.nodes();
         Self {
@@ -80,31 +80,31 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Solves K y = b in place for as many right-hand sides as are stacked, with the stiffness matrix K of the last
-    /// solve, over the cloth's unknowns.
+    /// Solves K y = b in place for all stacked right-hand sides, with the stiffness matrix K of the last solve, over
+    /// the cloth's unknowns.
     pub fn solve_linear(&mut self, columns: &mut [f64]) {
-        // Conjugate gradients belong to time steps, which need no sensitivities.
+        // Conjugate gradients serve time steps only, which need no sensitivities.
         let _ = self.linear.solve(self.cloth.pattern(), columns);
     }
 
-    /// Derivative of the clips' forces ([`Solver::clip_forces`]) with respect to the unknowns, N/m: 3 × clips rows.
-    /// Empty before the first solve.
+    /// Derivative of the clip forces ([`Solver::clip_forces`]) with respect to the unknowns, N/m: 3 × clips rows. Empty
+    /// before the first solve.
     pub fn border(&self) -> &[f64] {
         let start = self.cloth.entries();
         self.values.get(start..self.values.len().saturating_sub(1)).unwrap_or_default()
     }
 
-    /// The force that holds each clip at the last solve's state, N, apart from the clip's own weight.
+    /// Force that holds each clip at the last solve's state, N, excluding the clip's own weight.
     pub fn clip_forces(&self) -> Vec<Vector3<f64>> {
         self.cloth.clip_forces(&self.gradient)
     }
 
-    /// The gradient at the last solve's state, N, 3 a node.
+    /// Gradient at the last solve's state, N, 3 per node.
     pub fn gradient(&self) -> &[f64] {
         &self.gradient
     }
 
-    /// The outcome at a state that no solve can start from; it stays, and so does the factor.
+    /// Outcome for a state from which no solve can start; `x` and the factor are unchanged.
     pub(super) fn refused(&self, x: &[f64]) -> Option<Equilibrium> {
         let status = if x.iter().all(|c| c.is_finite()) { Status::NotParallel } else { Status::NotFinite };
         (!self.cloth.is_parallel(x)).then_some(Equilibrium {
@@ -120,21 +120,21 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// Gradient and factor at a state that the last minimisation did not end in.
+    /// Recomputes gradient and factor at a state that is not the end of the last minimisation.
     pub(super) fn refresh(&mut self, curves: &Curves, x: &[f64]) {
         self.evaluate(curves, x);
         self.factorise_true_hessian(curves, x);
     }
 
-    /// The imbalance, what it must come below, and by which limit.
+    /// The imbalance, its limit, and the kind of limit.
     ///
-    /// Rounding: coordinates are known to an ulp, and an error δ of position is an error K δ of force; forces sum with
-    /// errors of an ulp of their own. A hundred of both are allowed for.
+    /// Rounding: coordinates are accurate to an ulp, and a position error δ causes a force error K δ; summed forces add
+    /// errors of an ulp each. The limit allows a hundred times both.
     pub(super) fn balance(&mut self, x: &[f64], settings: &Settings) -> (f64, f64, Limit) {
         let cloth = self.cloth;
         let size = x.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
         let (mut typical, mut last) = (0.0, usize::MAX);
-        // Nodes that move alike balance as one, whose errors are those of all.
+        // Tied nodes balance as one, with the errors of all.
         self.forces.fill(0.0);
         for &(coordinate, unknown) in cloth.free_coordinates() {
             let node = coordinate / 3;
@@ -169,7 +169,7 @@ impl<'a> Solver<'a> {
         imbalance <= tolerance
     }
 
-    /// True if the state is stable: no stiffness is negative, or zero up to rounding.
+    /// Factorises the true Hessian. True if the state is stable: no stiffness is negative, or zero up to rounding.
     pub(super) fn factorise_true_hessian(&mut self, curves: &Curves, x: &[f64]) -> bool {
         self.assemble(curves, x, Curvature::Full);
         let stable = self.factorise(-SINGULAR * self.mean_diagonal());
@@ -179,12 +179,12 @@ impl<'a> Solver<'a> {
         stable
     }
 
-    /// Adds μ to the diagonal, ten times more each time, until the matrix is positive definite.
+    /// Adds μ to the diagonal, increased tenfold until the matrix is positive definite.
     fn factorise_shifted(&mut self) -> bool {
         shifts(self.mean_diagonal()).any(|shift| self.factorise(shift))
     }
 
-    /// Never zero: a cloth without any stiffness still gets a factor.
+    /// Mean of the diagonal. Never zero, so that a cloth without any stiffness still gets a factor.
     pub(super) fn mean_diagonal(&self) -> f64 {
         let diagonal = self.cloth.diagonal();
         let sum: f64 = diagonal.iter().map(|&place| self.values[place].abs()).sum();
@@ -201,12 +201,12 @@ impl<'a> Solver<'a> {
         made.is_ok()
     }
 
-    /// d = −(K + μI)⁻¹ g of the assembled matrix; `None` where that is not positive definite.
+    /// d = −(K + μI)⁻¹ g of the assembled matrix; `None` if it is not positive definite.
     pub(super) fn direction_of(&mut self, shift: f64) -> Option<f64> {
         if self.factorise(shift) { self.direction() } else { None }
     }
 
-    /// d = −K⁻¹ g into `step`; returns g·d. `None` where conjugate gradients find K not positive definite.
+    /// Writes d = −K⁻¹ g to `step`; returns g·d. `None` if conjugate gradients find K not positive definite.
     pub(super) fn direction(&mut self) -> Option<f64> {
         self.cloth.collect(&self.gradient, &mut self.reduced);
         self.reduced.iter_mut().for_each(|force| *force = -*force);
@@ -226,13 +226,13 @@ impl<'a> Solver<'a> {
         matches!(self.linear, Linear::Direct(_))
     }
 
-    /// Total energy, with what a time step adds.
+    /// Total energy, including the terms of a time step.
     pub(super) fn energy(&mut self, curves: &Curves, x: &[f64]) -> f64 {
         let added = self.increment.as_mut().map_or(0.0, |increment| increment.energy(self.cloth, x));
         self.cloth.energy(curves, x) + added
     }
 
-    /// The same and its gradient.
+    /// Total energy and its gradient.
     pub(super) fn evaluate(&mut self, curves: &Curves, x: &[f64]) -> f64 {
         let energy = self.cloth.gradient(curves, x, &mut self.gradient, &mut self.scale);
         let (gradient, scale) = (&mut self.gradient, &mut self.scale);
@@ -240,7 +240,7 @@ impl<'a> Solver<'a> {
             + self.increment.as_mut().map_or(0.0, |added| added.add_gradient(self.cloth, x, gradient, scale))
     }
 
-    /// The Hessian, with what a time step adds.
+    /// Assembles the Hessian, including the terms of a time step.
     pub(super) fn assemble(&mut self, curves: &Curves, x: &[f64], curvature: Curvature<'_>) {
         self.cloth.hessian(curves, x, curvature, &mut self.values);
         if let Some(increment) = &self.increment {
@@ -248,7 +248,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// The same with the geometric part at the strains that the last step predicted, if there was one.
+    /// Assembles it with the geometric part at the strains predicted by the last step, if there was one.
     pub(super) fn assemble_mixed(&mut self, curves: &Curves, x: &[f64]) {
         let mixed = std::mem::take(&mut self.mixed);
         let curvature =
@@ -257,7 +257,7 @@ impl<'a> Solver<'a> {
         self.mixed = mixed;
     }
 
-    /// Energy after a share of the step; the state and its gradient stay in `trial`.
+    /// Energy after a share of the step; state and gradient are left in the trial buffers.
     pub(super) fn try_step(&mut self, curves: &Curves, x: &[f64], length: f64) -> f64 {
         for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.step) {
             *trial = x + length * d;
@@ -272,7 +272,7 @@ impl<'a> Solver<'a> {
                 .map_or(0.0, |added| added.add_gradient(self.cloth, trial, gradient, scale))
     }
 
-    /// Takes the trial; the strains that the step predicted are kept for the next matrix.
+    /// Accepts the trial; the strains predicted by the step are kept for the next matrix.
     pub(super) fn accept(&mut self, x: &mut [f64], energy: f64) -> f64 {
         self.cloth.predicted_strains(x, &self.step, &mut self.mixed);
         x.copy_from_slice(&self.trial);
@@ -282,7 +282,7 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Shifts μ from a billionth of the mean of a diagonal up, ten times more each.
+/// Shifts μ, from a billionth of the mean diagonal up, each ten times the previous.
 pub(super) fn shifts(mean: f64) -> impl Iterator<Item = f64> {
     (0..16).map(move |power| mean * 1e-9 * 10f64.powi(power))
 }

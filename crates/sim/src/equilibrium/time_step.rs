@@ -1,4 +1,4 @@
-//! An implicit time step: the equilibrium of the energy and what the step adds to it.
+//! An implicit time step: an equilibrium of the energy plus the terms of the step.
 
 use super::outcome::{Equilibrium, Status};
 use super::remedies::Remedies;
@@ -7,15 +7,16 @@ use super::solver::Solver;
 use crate::element::Curvature;
 use crate::material::Curves;
 
-/// Most time steps take two to ten; one that has not come to its end by then is begun anew, downhill all the way.
+/// Most time steps take two to ten iterations; one that exceeds this limit is restarted with the energy falling in
+/// every iteration.
 const BRISK_ITERATIONS: usize = 40;
 
-/// An energy higher by less than this share of it is higher by rounding.
+/// A rise of the energy below this share of it is rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl Solver<'_> {
-    /// Solves the step's equation from where it starts or, if the potential is lower there, from where the velocity leads. The
-    /// potential ends no higher than it was, whether the equation is solved or not.
+    /// Solves the step's equation from its start or, if the potential is lower there, from the position predicted by
+    /// the velocity. The potential never ends higher than it started, even if the equation is not solved.
     pub(crate) fn time_step(
         &mut self,
         curves: &Curves,
@@ -34,7 +35,7 @@ impl Solver<'_> {
         self.mixed.clear();
         let brisk = Settings { max_iterations: settings.max_iterations.min(BRISK_ITERATIONS), ..*settings };
         let found = self.minimise(curves, x, &brisk);
-        // Where the energy may rise on the way, it may also have ended above that of the start.
+        // If the energy may rise in between, it may also end above its start.
         if found.status == Status::Converged && found.energy <= start + ROUNDING * start.abs() {
             return found;
         }
@@ -54,7 +55,7 @@ impl Solver<'_> {
         }
     }
 
-    /// Solves the step's equation linearised where it starts; `None` if it has no finite solution.
+    /// Solves the step's equation linearised at its start; `None` if it has no finite solution.
     ///
     /// Source: Baraff and Witkin 1998, §4.
     pub(crate) fn linearised_step(&mut self, curves: &Curves, x: &mut [f64]) -> Option<Remedies> {
@@ -67,12 +68,12 @@ impl Solver<'_> {
         self.step.iter().all(|d| d.is_finite()).then_some(Remedies { clamped, ..Remedies::default() })
     }
 
-    /// Factorisations so far.
+    /// Number of factorisations so far.
     pub(crate) fn factorisations(&self) -> usize {
         self.linear.factorisations()
     }
 
-    /// Iterations of conjugate gradients so far.
+    /// Number of conjugate gradient iterations so far.
     pub(crate) fn linear_iterations(&self) -> usize {
         self.linear.iterations()
     }

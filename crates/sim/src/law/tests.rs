@@ -1,7 +1,7 @@
-//! A law whose strains are coupled, through the same sums as the curves.
+//! A law with coupled strains, through the same sums as the curves.
 //!
 //! ```text
-//! W = Σ_c W_c(ε_c) + p₀ ε₀ ε₁ + ½ p₁ ε₀² ε₂²        p a pair of each element, as history is
+//! W = Σ_c W_c(ε_c) + p₀ ε₀ ε₁ + ½ p₁ ε₀² ε₂²        p a pair per element, as a history would be
 //! goal    gradient = dE/dx, Hessian = d(gradient)/dx, columns = d(gradient)/dp
 //! passes  1e-7 relative; curves alone give what they gave
 //! ```
@@ -15,7 +15,7 @@ use crate::mesh::{Diagonals, Grid};
 
 struct Coupled {
     curves: Curves,
-    /// Of each element, N/m.
+    /// Parameter pair of each element, N/m.
     p: Vec<[f64; 2]>,
 }
 
@@ -142,7 +142,7 @@ fn a_coupled_law_has_the_derivatives_of_its_energy() {
     let error =
         derivative_error(|x| gradient(&law, &elements, x), &hessian(&law, &elements, &x), &x, 1e-6, 1e-9);
     assert!(error < 1e-7, "Hessian {error:.1e}");
-    // What is coupled is no small thing there.
+    // The coupling is not negligible here.
     let alone = hessian(&law.curves, &elements, &x);
     let apart =
         hessian(&law, &elements, &x).iter().zip(&alone).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -158,7 +158,7 @@ fn a_law_may_have_any_parameters() {
     let law = with(&p);
     ParameterPass { law: &law, x: &x, parameters: (), derivative: &mut derivative, columns: &mut columns }
         .visit::<3, 3, 3, _>(0, &elements);
-    // By rows of coordinates.
+    // Row by row over the coordinates.
     let rows: Vec<f64> = (0..x.len()).flat_map(|i| [columns[i], columns[x.len() + i]]).collect();
     let error = derivative_error(|p| gradient(&with(p), &elements, &x), &rows, &p, 1e-2, 1e-12);
     assert!(error < 1e-7, "{error:.1e}");

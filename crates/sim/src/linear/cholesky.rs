@@ -11,11 +11,11 @@ use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky::LltRef;
 use faer::{Conj, MatMut, Par, Side, Spec};
 
-/// The numeric part of a factorisation, with all the memory it needs.
+/// Numeric part of a factorisation, with all the memory it needs.
 pub(crate) struct Factor {
     values: Vec<f64>,
     memory: MemBuffer,
-    /// How many factorisations were made.
+    /// Number of factorisations.
     pub(super) count: usize,
 }
 
@@ -32,7 +32,7 @@ impl Factor {
     /// Factorises the matrix with these lower entries.
     pub(super) fn factorise(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
         self.count += 1;
-        // A NaN would come back as a factor full of NaN, and as success.
+        // A NaN would give a factor full of NaN, reported as success.
         if !lower.iter().all(|value| value.is_finite()) {
             return Err(NotPositiveDefinite);
         }
@@ -52,7 +52,7 @@ impl Factor {
             .map_err(|_| NotPositiveDefinite)
     }
 
-    /// Solves for as many right-hand sides as are stacked in `columns`, in place.
+    /// Solves in place for all right-hand sides stacked in `columns`.
     pub(super) fn solve(&mut self, pattern: &Pattern, columns: &mut [f64]) {
         let size = pattern.size();
         if size == 0 {
@@ -61,7 +61,7 @@ impl Factor {
         let sides = columns.len() / size;
         let request = pattern.symbolic.solve_in_place_scratch::<f64>(sides, Par::Seq);
         let mut larger;
-        // Several right-hand sides at once are rare (once a frame): only they get memory of their own.
+        // Several right-hand sides at once are rare (once per frame), so only they allocate.
         let memory = if sides > 1 {
             larger = MemBuffer::new(request);
             &mut larger
@@ -81,7 +81,7 @@ impl Factor {
 mod tests {
     use super::*;
 
-    /// The path graph's Laplacian plus one.
+    /// Laplacian of a path graph plus one.
     fn chain(size: usize) -> (Pattern, Vec<f64>) {
         let columns: Vec<Vec<usize>> = (0..size).map(|i| (i..(i + 2).min(size)).collect()).collect();
         let pattern = Pattern::new(&columns).unwrap();

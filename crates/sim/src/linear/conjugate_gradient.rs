@@ -1,27 +1,27 @@
-//! Conjugate gradients with a diagonal preconditioner, for the sparse symmetric systems of a time step.
+//! Conjugate gradients with a diagonal preconditioner, for the sparse symmetric systems of time steps.
 //!
 //! ```text
 //! P = diag(A)     stop at rᵀP⁻¹r ≤ γ² bᵀP⁻¹b     start at 0
 //! ```
 //!
-//! Source: Baraff and Witkin 1998, §5.2; their filter is in the matrix already, see [`cloth::guide`](crate::cloth).
+//! Source: Baraff and Witkin 1998, §5.2; the matrix already contains their filter, see [`cloth::guide`](crate::cloth).
 
 use super::matrix::{NotPositiveDefinite, Pattern};
 
-/// The iteration's memory and settings.
+/// Memory and settings of the iteration.
 #[derive(Debug)]
 pub(crate) struct ConjugateGradient {
     /// γ.
     tolerance: f64,
     max_iterations: usize,
-    /// The matrix's lower entries.
+    /// Lower entries of the matrix.
     lower: Vec<f64>,
     /// 1 / diagonal.
     inverse_diagonal: Vec<f64>,
     residual: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
-    /// How many iterations were made.
+    /// Number of iterations.
     pub(crate) iterations: usize,
 }
 
@@ -40,12 +40,12 @@ impl ConjugateGradient {
         }
     }
 
-    /// Takes a matrix.
+    /// Takes the matrix with these lower entries.
     pub(crate) fn prepare(&mut self, pattern: &Pattern, lower: &[f64]) -> Result<(), NotPositiveDefinite> {
         self.lower.copy_from_slice(lower);
         for (column, inverse) in self.inverse_diagonal.iter_mut().enumerate() {
             let diagonal = lower[pattern.diagonal(column)];
-            // Written so that a NaN is caught too.
+            // Negated to catch NaN.
             if !(diagonal > 0.0) {
                 return Err(NotPositiveDefinite);
             }
@@ -54,8 +54,8 @@ impl ConjugateGradient {
         Ok(())
     }
 
-    /// Replaces b by A⁻¹b; where the iterations run out, by what is reached. A direction without positive curvature is an
-    /// error, and `b` then undefined.
+    /// Replaces b by A⁻¹b, or by the last iterate at the iteration limit. A direction without positive curvature is an
+    /// error, which leaves `b` undefined.
     pub(crate) fn solve(&mut self, pattern: &Pattern, b: &mut [f64]) -> Result<(), NotPositiveDefinite> {
         self.residual.copy_from_slice(b);
         b.fill(0.0);
@@ -95,7 +95,7 @@ impl ConjugateGradient {
 mod tests {
     use super::*;
 
-    /// Pairs of unknowns, each [d c; c d].
+    /// Pairs of unknowns, each with the matrix [d c; c d].
     fn pairs(d: f64, c: f64) -> (Pattern, Vec<f64>) {
         let columns: Vec<Vec<usize>> =
             (0..10).flat_map(|i| [vec![2 * i, 2 * i + 1], vec![2 * i + 1]]).collect();

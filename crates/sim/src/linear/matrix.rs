@@ -1,4 +1,4 @@
-//! Sparse symmetric matrices: where their entries stand, and what keeps one from being factorised.
+//! Sparse symmetric matrices: entry positions, and the reasons against a factorisation.
 
 use faer::Side;
 use faer::sparse::SymbolicSparseColMat;
@@ -7,7 +7,7 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 
-/// The lower triangle of a symmetric sparse matrix, column by column, and the symbolic part of its factorisation.
+/// The lower triangle of a symmetric sparse matrix, column by column, and its symbolic factorisation.
 #[derive(Debug)]
 pub(crate) struct Pattern {
     pub(super) lower: SymbolicSparseColMat<usize>,
@@ -15,12 +15,12 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// * `columns` — row indices ≥ the column's own, ascending, the diagonal first
+    /// * `columns` — row indices from the diagonal down, ascending, diagonal first
     ///
-    /// `None` if memory does not suffice.
+    /// `None` if memory is insufficient.
     pub(crate) fn new(columns: &[Vec<usize>]) -> Option<Self> {
         let lower = structure(columns);
-        // With the identity ordering this version reads the upper triangle only, whatever side it is told.
+        // With the identity ordering, this version of faer reads only the upper triangle, whatever side it is given.
         let mut upper = vec![Vec::new(); columns.len()];
         for (column, rows) in columns.iter().enumerate() {
             rows.iter().for_each(|&row| upper[row].push(column));
@@ -29,7 +29,7 @@ impl Pattern {
             structure(&upper).as_ref(),
             Side::Upper,
             SymmetricOrdering::Identity,
-            // Left to choose, this version factorises sheets in the plane column by column, at 51×51 nodes half as fast.
+            // By default, this version factorises planar sheets column by column, half as fast at 51×51 nodes.
             CholeskySymbolicParams {
                 supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
                 ..CholeskySymbolicParams::default()
@@ -48,20 +48,20 @@ impl Pattern {
         self.lower.compute_nnz()
     }
 
-    /// Where an entry of the lower triangle is stored.
+    /// Storage position of an entry of the lower triangle.
     pub(crate) fn position(&self, row: usize, column: usize) -> Option<usize> {
         let range = self.lower.col_range(column);
         let found = self.lower.row_idx()[range.clone()].binary_search(&row).ok()?;
         Some(range.start + found)
     }
 
-    /// Where a diagonal entry is stored.
+    /// Storage position of a diagonal entry.
     pub(crate) fn diagonal(&self, column: usize) -> usize {
-        // Columns start with their diagonal.
+        // A column starts with its diagonal entry.
         self.lower.col_range(column).start
     }
 
-    /// `product` = A x, A symmetric with these lower entries.
+    /// `product` = A x, for the symmetric A with these lower entries.
     pub(crate) fn multiply(&self, lower: &[f64], x: &[f64], product: &mut [f64]) {
         product.fill(0.0);
         let rows = self.lower.row_idx();
@@ -79,11 +79,11 @@ impl Pattern {
     }
 }
 
-/// The matrix has a pivot that is not positive, or an entry that is not finite.
+/// The matrix has a non-positive pivot or a non-finite entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NotPositiveDefinite;
 
-/// The places of the entries, column by column.
+/// Positions of the entries, column by column.
 pub(super) fn structure(columns: &[Vec<usize>]) -> SymbolicSparseColMat<usize> {
     let mut starts = vec![0];
     starts.extend(columns.iter().scan(0, |sum, column| {

@@ -1,27 +1,28 @@
-//! Orders of a sheet's nodes that keep a factor sparse.
+//! Node orderings that keep a factor sparse.
 
 use super::matrix::structure;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;
 use nalgebra::Vector3;
 
-/// Larger sheets are dissected: of 101×101 nodes a factor then costs about two thirds as much, of fewer nodes about the same.
+/// Larger sheets use nested dissection: at 101×101 nodes a factor then costs about two thirds as much; for fewer nodes,
+/// about the same.
 const DISSECTED: usize = 2000;
 
-/// Parts no larger than this are not cut further.
+/// Parts up to this size are not cut further.
 const LEAF: usize = 100;
 
-/// Order of a sheet's nodes that keeps the factor sparse.
+/// Orders a sheet's nodes so that the factor stays sparse.
 ///
-/// * `neighbours` — of every node, ascending, without itself
-/// * `places` — where the nodes are at rest, m
-/// * returns — node at each place
+/// * `neighbours` — neighbours of every node, ascending, without the node itself
+/// * `places` — rest positions of the nodes, m
+/// * returns — the node at each place
 pub(crate) fn order(neighbours: &[Vec<usize>], places: &[Vector3<f64>]) -> Vec<usize> {
     let all = (0..places.len()).collect();
     if places.len() <= DISSECTED { minimum_degree(neighbours, all) } else { dissect(neighbours, places, all) }
 }
 
-/// Nested dissection: a cut across the longer side comes after the two parts that it leaves, which are cut likewise.
+/// Nested dissection: a separator across the longer side is ordered after the two parts, which are cut recursively.
 ///
 /// Source: George 1973.
 fn dissect(neighbours: &[Vec<usize>], places: &[Vector3<f64>], mut part: Vec<usize>) -> Vec<usize> {
@@ -45,7 +46,7 @@ fn dissect(neighbours: &[Vec<usize>], places: &[Vector3<f64>], mut part: Vec<usi
     order
 }
 
-/// Order of a part of a graph by approximate minimum degree.
+/// Orders a part of a graph by approximate minimum degree.
 fn minimum_degree(neighbours: &[Vec<usize>], mut part: Vec<usize>) -> Vec<usize> {
     part.sort_unstable();
     let size = part.len();
@@ -63,7 +64,7 @@ fn minimum_degree(neighbours: &[Vec<usize>], mut part: Vec<usize>) -> Vec<usize>
         MemStack::new(&mut memory),
     ) {
         Ok(_) => order.into_iter().map(|index| part[index]).collect(),
-        // Any order is right, only slower.
+        // Any order is correct, only slower.
         Err(_) => part,
     }
 }

@@ -1,10 +1,10 @@
-//! Soft-constraint triangles: change of length instead of Green strain.
+//! Soft-constraint triangles: engineering strain instead of Green strain.
 
 use super::triangle::{TRIANGLE_COMPONENTS, Triangle, add_scalar_blocks};
 use crate::element::{Block, Element, Point};
 use crate::material::Component;
 
-/// A triangle whose stretch strains are changes of length.
+/// A triangle whose stretch strains are engineering strains.
 ///
 /// ```text
 /// ε_u = |w_u| − 1     ε_v = |w_v| − 1     ε_uv = w_u·w_v
@@ -15,7 +15,7 @@ use crate::material::Component;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftTriangle(pub Triangle);
 
-/// |w| as √(|w|² + δ²): the same bits at rest, finite derivatives at collapse.
+/// |w| is computed as √(|w|² + δ²): bit-identical at rest, with finite derivatives at collapse.
 const SMALLEST_STRETCH: f64 = 1e-8;
 
 #[inline(always)]
@@ -87,7 +87,7 @@ impl<const N: usize> Element<3, N, 3> for SoftTriangle {
         self.add_blocks(x, [s_u, s_v], [0.0, 0.0, s_uv], blocks);
     }
 
-    /// Compression is dropped; of the shear, whose eigenvalues are ±σ_uv, the positive one stays.
+    /// Drops compression, and keeps the positive of the shear eigenvalues ±σ_uv.
     fn add_clamped(&self, x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3], blocks: &mut [[Block<N>; 3]; 3]) {
         let half = 0.5 * s_uv.abs();
         self.add_blocks(x, [s_u.max(0.0), s_v.max(0.0)], [half, half, 0.5 * s_uv], blocks);

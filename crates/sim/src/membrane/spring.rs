@@ -1,4 +1,4 @@
-//! Springs: ring 1 in the sheet, ring 2 against bending.
+//! Springs: ring 1 in the plane, ring 2 for bending.
 
 use crate::element::{Block, Element, Point};
 use crate::error::{Error, Result};
@@ -12,22 +12,22 @@ use nalgebra::Vector2;
 /// ε = l/l₀ − 1      ∂ε/∂x_b = n/l₀ = −∂ε/∂x_a      ∂²ε/∂x_b∂x_b = (I − n nᵀ)/(l l₀)      n = (x_b − x_a)/l
 /// ```
 ///
-/// Source: Miguel et al. 2012, eq. 1. Its energy density is integrated over the cloth that the spring stands for, so
-/// that a stretch curve's stress is the nominal force per width.
+/// Source: Miguel et al. 2012, eq. 1. The energy density is integrated over the cloth area that the spring represents,
+/// so the stress of a stretch curve is the nominal force per width.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
     /// Node indices.
     pub nodes: [usize; 2],
     /// Rest length, m.
     pub rest_length: f64,
-    /// The cloth that the spring stands for, m².
+    /// Cloth area that the spring represents, m².
     pub area: f64,
-    /// The component that its direction in material coordinates makes it.
+    /// Component, from the spring's direction in material coordinates.
     pub component: Component,
 }
 
 impl Spring {
-    /// Direction and length; the length never is zero.
+    /// Direction and length; the length is never zero.
     #[inline(always)]
     fn length<const N: usize>(&self, x: &[Point<N>; 2]) -> (Point<N>, f64) {
         let along = x[1] - x[0];
@@ -74,7 +74,7 @@ impl<const N: usize> Element<2, N, 1> for Spring {
     }
 }
 
-/// Where a material direction points.
+/// Class of a material direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Direction {
     Weft,
@@ -82,8 +82,8 @@ pub(crate) enum Direction {
     Diagonal,
 }
 
-/// The class of a material direction: a yarn within 22.5°, or neither. Never by grid index: on a strip cut on the bias
-/// the yarns run along the cells' diagonals.
+/// Classifies a material direction: along a yarn within 22.5°, or diagonal. Grid indices do not suffice: on a strip cut
+/// on the bias, the yarns run along the cells' diagonals.
 pub(crate) fn direction_of(along: Vector2<f64>) -> Direction {
     let angle = along.y.abs().atan2(along.x.abs());
     let eighth = std::f64::consts::FRAC_PI_8;
@@ -96,17 +96,17 @@ pub(crate) fn direction_of(along: Vector2<f64>) -> Direction {
     }
 }
 
-/// Parallel springs of one kind, over the whole grid.
+/// Parallel springs of one kind over the whole grid.
 struct Family {
     springs: Vec<Spring>,
 }
 
 /// Ring-1 springs of a grid: along both sides of the cells and along both diagonals.
 ///
-/// * `components` — the membrane components wanted; others get no springs
+/// * `components` — the requested membrane components; others get no springs
 ///
 /// # Errors
-/// The mesh is no regular grid, or its cells are crossed.
+/// The mesh is not a regular grid, or its cells are crossed.
 pub fn ring_one(mesh: &Mesh, components: &[Component]) -> Result<Vec<Spring>> {
     let of = |direction| match direction {
         Direction::Weft => Component::StretchWeft,
@@ -116,12 +116,12 @@ pub fn ring_one(mesh: &Mesh, components: &[Component]) -> Result<Vec<Spring>> {
     springs(mesh, "a membrane of springs", [[1, 0], [0, 1], [1, 1], [-1, 1]], of, components)
 }
 
-/// Ring-2 springs of a grid: over two cells, along the same four directions. They resist bending, by being shortened.
+/// Ring-2 springs of a grid: over two cells, along the same four directions. Bending shortens them.
 ///
-/// * `components` — the bending components wanted; others get no springs
+/// * `components` — the requested bending components; others get no springs
 ///
 /// # Errors
-/// The mesh is no regular grid, or its cells are crossed.
+/// The mesh is not a regular grid, or its cells are crossed.
 pub fn ring_two(mesh: &Mesh, components: &[Component]) -> Result<Vec<Spring>> {
     let of = |direction| match direction {
         Direction::Weft => Component::BendWeft,
@@ -142,8 +142,8 @@ fn springs(
     let grid = plain.ok_or(Error::NeedsGrid { what })?;
     let families: Vec<Family> =
         steps.into_iter().map(|step| family(mesh, &grid, step, &component_of)).collect();
-    // Families of one component share the cloth between them, so that each component covers it once: both diagonals
-    // resist shear with half the cells' area each.
+    // Families of one component share the cloth, so that each component covers it once: both diagonals resist shear
+    // with half of the cells' area each.
     let sharing = |family: &Family| {
         let component = |family: &Family| family.springs.first().map(|spring| spring.component);
         families.iter().filter(|other| component(other) == component(family)).count() as f64
@@ -180,7 +180,7 @@ fn family(
             let nodes = [grid.node(column, row), grid.node(to_column, to_row)];
             let along = mesh.material[nodes[1]] - mesh.material[nodes[0]];
             direction += along;
-            // Along a side of the cells a spring stands for a strip one cell wide, half at the border.
+            // A spring along a cell side represents a strip one cell wide, half at the border.
             let at_border = step[1] == 0 && (row == 0 || row == grid.rows - 1)
                 || step[0] == 0 && (column == 0 || column == grid.columns - 1);
             springs.push(Spring {

@@ -4,7 +4,7 @@ use super::triangle::{TRIANGLE_COMPONENTS, Triangle, add_scalar_blocks};
 use crate::element::{Block, Element, Point};
 use crate::material::Component;
 
-/// A triangle with Green strains and no coupling between them.
+/// A triangle with uncoupled Green strains.
 ///
 /// ```text
 /// ε_u = (w_u·w_u − 1)/2     ε_v = (w_v·w_v − 1)/2     ε_uv = w_u·w_v
@@ -12,9 +12,8 @@ use crate::material::Component;
 /// Σ σ ∇²ε  = (σ_u r_u,a r_u,b + σ_v r_v,a r_v,b + σ_uv (r_u,a r_v,b + r_v,a r_u,b)) I
 /// ```
 ///
-/// Source: Miguel et al. 2012, eq. 3; Volino et al. 2009. The stiffness part of the shear term is that of the
-/// derivative, (r_u,a w_v + r_v,a w_u)(r_u,b w_v + r_v,b w_u)ᵀ, which Strohkorb 2019 prints without two of its four
-/// products.
+/// Source: Miguel et al. 2012, eq. 3; Volino et al. 2009. The stiffness part of the shear term is (r_u,a w_v + r_v,a
+/// w_u)(r_u,b w_v + r_v,b w_u)ᵀ, from differentiation; Strohkorb 2019 prints it without two of the four products.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StvkTriangle(pub Triangle);
 
@@ -52,7 +51,7 @@ impl<const N: usize> Element<3, N, 3> for StvkTriangle {
         add_scalar_blocks(&self.0, stress, blocks);
     }
 
-    /// The stress tensor [σ_u σ_uv; σ_uv σ_v] loses its negative eigenvalues.
+    /// Removes the negative eigenvalues of the stress tensor [σ_u σ_uv; σ_uv σ_v].
     fn add_clamped(&self, _x: &[Point<N>; 3], &[s_u, s_v, s_uv]: &[f64; 3], blocks: &mut [[Block<N>; 3]; 3]) {
         let (mean, half) = (0.5 * (s_u + s_v), 0.5 * (s_u - s_v));
         let radius = half.hypot(s_uv);

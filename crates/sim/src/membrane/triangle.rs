@@ -1,16 +1,16 @@
-//! A triangle of the sheet at rest, and what all membranes of triangles share.
+//! Rest state of a triangle, shared by all triangle membranes.
 
 use crate::element::{Block, Point};
 use crate::material::Component;
 use crate::mesh::Mesh;
 
-/// A triangle's rest state: the weights that turn its nodes into the deformation gradient.
+/// Rest state of a triangle: weights that map its nodes to the deformation gradient.
 ///
 /// ```text
 /// w_u = Σ_a r_u,a x_a      w_v = Σ_a r_v,a x_a        (both 3-vectors; unit and orthogonal at rest)
 /// ```
 ///
-/// Source: Miguel et al. 2012, eq. 2; in this form Volino et al. 2009.
+/// Source: Miguel et al. 2012, eq. 2, in the form of Volino et al. 2009.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangle {
     /// Node indices.
@@ -24,7 +24,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The rest state of one triangle of a mesh.
+    /// Rest state of one triangle of a mesh.
     pub fn new(mesh: &Mesh, triangle: usize) -> Self {
         let nodes = mesh.triangles[triangle];
         let double_area = mesh.double_area(triangle);
@@ -38,14 +38,14 @@ impl Triangle {
         }
     }
 
-    /// The deformation gradient's columns w_u and w_v.
+    /// Columns w_u and w_v of the deformation gradient.
     pub fn deformation<const N: usize>(&self, x: &[Point<N>; 3]) -> [Point<N>; 2] {
         let combine = |r: &[f64; 3]| x[0] * r[0] + x[1] * r[1] + x[2] * r[2];
         [combine(&self.weft), combine(&self.warp)]
     }
 }
 
-/// The components of a triangle's three strains.
+/// Components of a triangle's three strains.
 pub(super) const TRIANGLE_COMPONENTS: [Component; 3] =
     [Component::StretchWeft, Component::StretchWarp, Component::Shear];
 

@@ -1,4 +1,4 @@
-//! What parts of a fit save and cost.
+//! Savings and errors of the parts of a fit.
 
 use super::ablated::Ablated;
 use crate::extent::Extent;
@@ -14,10 +14,10 @@ use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Constraints, FirstStiffness, Settings};
 use cloth_fit::twin::replica::TableHold;
 
-/// Something that the published method does without.
+/// A part that the published method lacks, and the settings without it.
 type Published = (&'static str, fn(Settings) -> Settings);
 
-/// What differs from the published method, one at a time.
+/// Differences from the published method, applied one at a time.
 const DIFFERENCES: [Published; 9] = [
     ("mixed Newton", |s| Settings { equilibrium: damped(), ..s }),
     ("start at the last equilibrium", |s| Settings { solve_start: SolveStart::Measured, ..s }),
@@ -30,7 +30,7 @@ const DIFFERENCES: [Published; 9] = [
     ("errors of what is held", |s| Settings { table: TableHold { whitened: false, ..s.table }, ..s }),
 ];
 
-/// The parts of fits: control points, the second pass, and what differs from the published method.
+/// Ablation of fits: control points, second pass, and differences from the published method.
 pub(crate) fn of_fits(
     subject: &Subject,
     reference: &Reference,
@@ -50,7 +50,7 @@ pub(crate) fn of_fits(
         let settings = without(usual.settings());
         against(part, with, &fit(&subject.set, reference, usual, &settings, progress))
     });
-    // As published a fit takes so long that it may not be on the usual grid.
+    // Fits with the published method take so long that they may not be run on the usual grid.
     let published = fits.iter().rev().find_map(|without| {
         let trial = Trial { solver: Solver::AsPublished, ..Trial::usual(without.trial.nodes) };
         let with = of_trial(Trial { solver: Solver::Default, ..trial })?;
@@ -60,7 +60,7 @@ pub(crate) fn of_fits(
     fewer.chain(second_pass(with)).chain(differences).chain(published).collect()
 }
 
-/// One fit without what another has.
+/// Compares two fits, one without a part.
 fn against(part: &str, with: &Fitted, without: &Fitted) -> Option<Ablated> {
     let (full, lesser) = (with.report.as_ref()?, without.report.as_ref()?);
     let changes = full.last_stages().filter_map(|stage| between(lesser.stage(stage.components[0])?, stage));
@@ -78,7 +78,7 @@ fn against(part: &str, with: &Fitted, without: &Fitted) -> Option<Ablated> {
     })
 }
 
-/// The second pass over shear and bending, from one fit: its stages are timed on their own.
+/// The second pass over shear and bending, from one fit whose stages are timed separately.
 fn second_pass(fit: &Fitted) -> Option<Ablated> {
     let report = fit.report.as_ref()?;
     let second: Vec<&StageReport> = report.stages.iter().filter(|stage| stage.pass > 1).collect();

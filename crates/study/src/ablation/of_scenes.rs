@@ -1,4 +1,4 @@
-//! What parts of a scene save and cost.
+//! Savings and errors of the parts of a scene.
 
 use super::ablated::Ablated;
 use crate::extent::Extent;
@@ -14,10 +14,10 @@ use cloth_sim::equilibrium;
 use cloth_sim::material::Component;
 use nalgebra::Vector3;
 
-/// Scenes are balanced so often, and the fastest counts.
+/// Number of runs of each scene; the fastest counts.
 const REPEATS: usize = 3;
 
-/// A scene with a part, and the same without it.
+/// A scene with and without a part.
 struct Pair {
     part: &'static str,
     by_default: bool,
@@ -25,10 +25,10 @@ struct Pair {
     without: (Scene, equilibrium::Settings),
 }
 
-/// The parts of scenes.
+/// Ablation of scenes.
 ///
 /// # Errors
-/// A scene that the rig cannot make.
+/// A scene that the rig cannot build.
 pub(crate) fn of_scenes(
     fabric: &KnownFabric,
     extent: &Extent,
@@ -54,13 +54,13 @@ fn pair(part: &'static str, by_default: bool, with: Scene, without: Scene) -> Pa
     Pair { part, by_default, with: (with, settings), without: (without, settings) }
 }
 
-/// A scene with more or other components.
+/// The same scene with more or other components.
 fn of(scene: &Scene, components: &[Component]) -> Scene {
     let plan = Plan { components: components.to_vec(), ..scene.plan.clone() };
     Scene { plan, ..scene.clone() }
 }
 
-/// The strip of the stretch stage: none of these takes part in it by default.
+/// The strip of the stretch stage, which includes none of these parts by default.
 fn of_strip(strip: &Scene) -> Vec<Pair> {
     let bends = [Component::BendWeft, Component::BendWarp, Component::BendDiagonal];
     let stretches = [Component::StretchWeft, Component::StretchWarp];
@@ -87,7 +87,7 @@ fn of_frame(frame: &Scene) -> Vec<Pair> {
     ]
 }
 
-/// The sheet off a table of the stages of bending.
+/// The sheet pushed off a table, from the bending stages.
 fn of_sheet(sheet: &Scene) -> Vec<Pair> {
     let without_shear: Vec<Component> =
         sheet.plan.components.iter().copied().filter(|component| *component != Component::Shear).collect();
@@ -98,7 +98,7 @@ fn of_sheet(sheet: &Scene) -> Vec<Pair> {
     ]
 }
 
-/// The same scene by other means.
+/// The same scene with another solver.
 fn solved(part: &'static str, scene: &Scene, without: equilibrium::Settings) -> Pair {
     let with = equilibrium::Settings::default();
     Pair { part, by_default: true, with: (scene.clone(), with), without: (scene.clone(), without) }

@@ -17,27 +17,27 @@ fn a_sound_curve_has_no_findings() {
     for sound in [curve(&[0.0], &[100.0]), curve(&[0.0, 0.1, 0.2], &[100.0, 150.0, 300.0])] {
         assert_eq!(check(&sound, &MEMBRANE), []);
     }
-    // A soft middle that rests on the limit: κ is 0.001 of the last stiffness.
+    // A soft middle exactly at the limit: κ is 0.001 of the last stiffness.
     let resting = curve(&[0.0], &[1e-1]);
     assert_eq!(check(&resting, &MEMBRANE), []);
 }
 
 #[test]
 fn every_defect_is_found_by_itself() {
-    // Positive at its points, negative between them: overshoot of the spline.
+    // Positive at the control points, negative between them: the spline overshoots.
     let dip = curve(&[0.0, 0.1, 0.2, 0.3], &[1000.0, 1.0, 1.0, 1000.0]);
     let found = check(&dip, &MEMBRANE);
     assert_eq!(found[0].kind, Kind::NegativeStiffness);
     assert!(found[0].strains[0] > 0.1 - 1e-12 && found[0].strains[1] < 0.2 + 1e-12, "{found:?}");
     assert!(found[0].value < 0.0 && found[0].severity() == Severity::Defect);
 
-    // Stress 10, 10.5 and then 8: it falls, but k is positive.
+    // Stress 10, 10.5 and then 8: it falls although k is positive.
     let kinked = curve(&[0.0, 0.1, 0.2, 0.3, 0.4], &[100.0, 100.0, 52.5, 30.0, 100.0]);
     let found = check(&kinked, &MEMBRANE);
     assert!(found.iter().all(|finding| finding.kind == Kind::LowTangent), "{found:?}");
     assert!(found[0].value < 0.0 && found[0].consequence().contains("falls"));
 
-    // Growth hardly at all counts too: σ = 10 + 0.05 (ε − 0.1).
+    // Barely growing stress also counts: σ = 10 + 0.05 (ε − 0.1).
     let flat = curve(&[0.0, 0.1, 0.2, 0.3, 0.4], &[100.0, 100.0, 50.025, 33.366_666_666_666_67, 25.0375]);
     let found = check(&flat, &MEMBRANE);
     assert!(found.iter().any(|finding| finding.kind == Kind::LowTangent), "{found:?}");
