@@ -1,9 +1,9 @@
-//! Clips that hold part of a side, or list part of what they hold.
+//! Clips that hold only part of a side, or list only part of the vertices they hold.
 //!
 //! ```text
 //!  ┃●──●──●       listed
 //!  ┃●──●──●
-//!   ○──●──●  d    beside: a free one lags by about ε d along the pull, one that the clip holds does not
+//!   ○──●──●  d    beside it: a free vertex lags by about ε d along the pull, a held one does not
 //! ```
 
 use crate::frame::{Fabric, Kind, Sequence, is_seen};
@@ -12,20 +12,20 @@ use crate::notice::Notice;
 use crate::rectangle::{Rectangle, bounds};
 use nalgebra::Vector2;
 
-/// A vertex that lags by less than this share of ε d is held; a free one lags by half of it at least.
+/// A vertex that lags by less than this share of ε d is held; a free vertex lags by at least half of ε d.
 const HELD: f64 = 0.25;
-/// The lags are looked at where together they would be so many times the noise.
+/// Lags are evaluated if their expected sum exceeds this many times the noise.
 const SURE: f64 = 10.0;
-/// Vertices on one line lie so near it, as a share of the specimen: rounding.
+/// Vertices within this share of the specimen size lie on one line; the rest is rounding.
 const TIE: f64 = 1e-6;
-/// Fewer vertices may be cut askew.
+/// Fewer vertices may result from an oblique cut.
 const FEWEST: usize = 3;
 
-/// A clip that grips this share of its side grips all of it.
+/// A clip that grips this share of its side counts as gripping all of it.
 const WHOLE: f64 = 0.98;
 
-/// Doubts a stretched specimen whose clips do not hold whole sides: with 83 % of a side a fit that leaves shear out makes denim
-/// 12 % too stiff. More so where a clip holds more than it says.
+/// Doubts a stretched specimen whose clips do not hold whole sides. With 83 % of a side, a fit that ignores shear
+/// makes denim 12 % too stiff; the error grows if a clip holds more than it lists.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let stretched = matches!(sequence.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
     if stretched && sequence.clips.len() == 2 {
@@ -47,7 +47,7 @@ fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
     let tie = TIE * between.norm();
     let alongside = |place: &Vector2<f64>| place[pull] >= low[pull] - tie && place[pull] <= high[pull] + tie;
     let beside = flat.iter().enumerate().filter(|(_, place)| alongside(place)).map(|(vertex, place)| {
-        // What is farther off than half the way to the other clip lags as that does.
+        // Beyond half the distance to the other clip the lag no longer grows.
         let apart = f64::max(low[across] - place[across], place[across] - high[across]);
         (vertex, apart.min(0.5 * between.norm()))
     });

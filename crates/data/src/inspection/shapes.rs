@@ -1,4 +1,4 @@
-//! Shapes that are missing, or whose heights are all the same, as a camera that sees no depth has them.
+//! Missing shapes, or shapes with constant height, as recorded by a camera without depth.
 
 use crate::frame::{Fabric, HEIGHT_SEEN, Kind, Sequence, is_seen};
 use crate::notice::Notice;
@@ -17,7 +17,7 @@ pub(super) fn check_presence(_: &Fabric, sequence: &mut Sequence, notices: &mut 
     ));
 }
 
-/// Says of a sheared sheet that its shapes do not tell whether it buckled.
+/// Reports a sheared sheet whose shapes cannot show whether it buckled.
 pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let places = sequence.frames.iter().flat_map(|frame| &frame.positions).flatten();
     let seen: Vec<&Vector3<f64>> = places.filter(|place| is_seen(place)).collect();
