@@ -1,14 +1,14 @@
-//! What a folder holds.
+//! Contents of a folder.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Names, and whether each is a folder. Hidden files are left out.
+/// Names of entries, and whether each is a folder. Hidden files are omitted.
 pub(super) type Entries = BTreeMap<String, bool>;
 
-/// The names in a folder.
+/// Lists a folder.
 pub(super) fn entries(folder: &Path) -> Result<Entries> {
     let failed = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => Error::input(folder, None, "folder", "nothing", "a folder"),

@@ -1,4 +1,4 @@
-//! `test.toml`: what was done to the specimen, with which instruments.
+//! `test.toml`: the test procedure and its instruments.
 
 use super::source::shown;
 use super::toml_file::{TomlFile, written};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Directions and quaternions may be this far from unit length.
+/// Allowed deviation of directions and quaternions from unit length.
 pub(super) const UNIT_LENGTH: f64 = 1e-6;
 
 /// The keys of `test.toml`.
@@ -18,7 +18,7 @@ pub(super) const UNIT_LENGTH: f64 = 1e-6;
 pub(super) struct TestFile {
     pub(super) kind: Kind,
     pub(super) gravity_m_s2: [f64; 3],
-    /// The one direction in which the load cell measures; absent = all three components.
+    /// The only direction measured by the load cell; absent = all three components.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) force_direction: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -29,12 +29,12 @@ pub(super) struct TestFile {
     pub(super) clips: Vec<Clip>,
 }
 
-/// True for the kinds that lie on a table and have no clips.
+/// True for overhang tests, which have a table and no clips.
 pub(super) fn bends(kind: Kind) -> bool {
     matches!(kind, Kind::BendWeft | Kind::BendWarp | Kind::BendBias)
 }
 
-/// Reads and checks `test.toml` for a mesh of so many vertices.
+/// Reads and checks `test.toml` for a mesh with the given number of vertices.
 pub(super) fn read(path: &Path, vertices: usize) -> Result<TestFile> {
     let file = TomlFile::read(path)?;
     let test: TestFile = file.value()?;
@@ -79,7 +79,7 @@ pub(super) fn write(path: &Path, sequence: &Sequence) -> Result<()> {
 }
 
 fn check_vector(file: &TomlFile, key: &str, vector: [f64; 3], unit: bool) -> Result<()> {
-    // Reading an array of three takes no notice of a fourth number.
+    // Deserialising an array of three ignores a fourth number.
     if file.has(&format!("{key}[3]")) {
         return Err(file.invalid(key, "more than three numbers", "an array of length 3"));
     }

@@ -1,8 +1,8 @@
-//! What a set's files leave out, state in part or name in a way that is nobody's.
+//! Files that are missing, incomplete or misnamed.
 
 use super::*;
 
-/// Another text for one of the files.
+/// Replaces the text of a file.
 fn text(file: &'static str, text: &'static str) -> impl Fn(&Path) {
     move |place: &Path| fs::write(place.join(file), text).unwrap()
 }
