@@ -1,6 +1,6 @@
 //! Source: the master curve of a heavy cantilever, by collocation (cantilever_master_curve/).
 //!
-//! Goal: the elastica that the bending tests are made of is the exact one.
+//! Goal: the elastica used in the bending tests is exact.
 //!
 //! ```text
 //!   ▒▒▒▒▒▒▒▒────╮        Γ = ρ g L³/D from 1e-3 to 1e4 on the curve, 0.1 to 1000 in the shapes
