@@ -124,7 +124,7 @@ impl CurveFile {
     fn check_order(&self) -> Result<()> {
         let strains = &self.strains;
         if strains.is_empty() {
-            return Err(self.refuse(None, "row", "nothing below the header", "one row at least"));
+            return Err(self.refuse(None, "row", "nothing below the header", "at least one row"));
         }
         let Some(row) = (1..strains.len()).find(|&row| strains[row] <= strains[row - 1]) else {
             return Ok(());
@@ -159,15 +159,15 @@ impl CurveFile {
         let below = self.strains.partition_point(|&strain| strain < -zero);
         let largest = self.largest_stress();
         if self.strains.len() - first < 1 {
-            return Err(self.refuse(None, axis, "no row above zero", "one row above zero at least"));
+            return Err(self.refuse(None, axis, "no row above zero", "at least one row above zero"));
         }
         if first - below > 1 {
-            let found = format!("{}, as good as the row before", self.strains[below + 1]);
+            let found = format!("{}, practically the same as the row before", self.strains[below + 1]);
             return Err(self.refuse(
                 Some(below + 1),
                 axis,
                 found,
-                "rows apart by 1e-9 of the largest at least",
+                "rows at least 1e-9 of the largest strain apart",
             ));
         }
         let at_zero = (below < first).then_some(below);
@@ -178,7 +178,7 @@ impl CurveFile {
                     Some(row),
                     stress,
                     found,
-                    "0 there: what is not strained is free of stress",
+                    "0 there: an unstrained cloth has no stress",
                 ));
             }
             None if below == 0 => {
@@ -205,7 +205,7 @@ impl CurveFile {
                 cloth_sim::error::Error::Curve { point, .. } => Some(first + point.saturating_sub(1)),
                 _ => None,
             };
-            self.refuse(row, stiffness, error.to_string(), "strains apart and finite stiffnesses")
+            self.refuse(row, stiffness, error.to_string(), "distinct strains and finite stiffnesses")
         })?;
         self.check_below_zero(&curve, below, largest)?;
         Ok(curve)
@@ -355,15 +355,15 @@ impl CurveFile {
         if !agrees {
             let [axis, _, stress, ..] = columns(Some(wanted));
             let [found, ..] = columns(self.measure);
-            let expected = format!("{axis} and {stress}, as {component} of {model} has");
+            let expected = format!("{axis} and {stress}, the columns of {component} in {model}");
             return Err(self.refuse(None, "header", format!("a column {found}"), expected));
         }
         if wanted == StrainMeasure::RingTwo {
             return Err(self.refuse(
                 None,
                 "model",
-                "moments over curvature for the springs of a grid that the file does not name",
-                "a material.json, whose control points are over the springs' own strain; or another model",
+                "moments over curvature for the springs of an unspecified grid",
+                "a material.json, with control points over the strain of the springs, or another model",
             ));
         }
         Ok(())
@@ -388,7 +388,7 @@ impl CurveFile {
             if !((self.stresses[row] - expected).abs() <= DISAGREEMENT * largest) {
                 let found = format!("{} at {}", self.stresses[row], self.strains[row]);
                 let rule = match curve.negative() {
-                    NegativeStrain::Odd => "an odd curve, as the rows above zero say",
+                    NegativeStrain::Odd => "an odd curve, given by the rows above zero",
                     NegativeStrain::Linear | NegativeStrain::Green => {
                         "compression with the stiffness at zero"
                     }

@@ -103,7 +103,7 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
                 None,
                 "file",
                 found,
-                "none: nothing is clipped in bending",
+                "none: bending tests have no clips",
             ));
         }
     }
@@ -152,7 +152,7 @@ pub fn fill_set(temporary: &Path, folder: &Path, set: &MeasurementSet) -> Result
         return Err(Error::Setting {
             field: "sequences[].name",
             found: format!("{} before {}", pair[0].name, pair[1].name),
-            expected: "every name once, in order".into(),
+            expected: "unique names in ascending order".into(),
         });
     }
     let read_back = |error| relocated(error, temporary, folder);
@@ -199,7 +199,7 @@ fn bending_frames(folder: &Path, shapes: Option<Vec<Option<npy::Shape>>>) -> Res
     if let Some(frame) = shapes.iter().position(Option::is_none) {
         let path = folder.join("positions.npy");
         let found = format!("no observed vertex in frame {frame}");
-        return Err(Error::input(&path, None, "file", found, "one at least in every frame"));
+        return Err(Error::input(&path, None, "file", found, "at least one in every frame"));
     }
     Ok(shapes.into_iter().map(|positions| Frame { positions, ..Frame::default() }).collect())
 }

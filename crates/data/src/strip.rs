@@ -97,8 +97,8 @@ impl Strip {
             Notice::doubt(
                 &self.sequence.name,
                 self.table.clone(),
-                format!("a compliance that takes off {:.0} % of the extension", 100.0 * self.compliant),
-                "a machine that hardly gives beside the strip: its unit, metres per newton, and how it was measured",
+                format!("a compliance that accounts for {:.0} % of the extension", 100.0 * self.compliant),
+                "a machine much stiffer than the strip: check the unit, metres per newton, and the measurement of the compliance",
             )
         })
     }
@@ -111,7 +111,7 @@ impl Strip {
             &self.sequence.name,
             format!("{counted} {first}"),
             format!("{count} {rows} that {repeat} the one before"),
-            "each reading once: the others are left out, since they tell nothing new",
+            "each reading once: the repeated rows are left out",
         ))
     }
 }
@@ -133,9 +133,8 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
     let (taken, repeats) = without_repeats(taken(&table, test, &readings)?);
     let length = free_length(&table, test, &readings)?;
     if !taken.iter().any(|reading| reading.separation > length) {
-        let found = format!("no clamps farther apart than the free length, {length} m");
-        let expected =
-            "an extension that grows where the strip is pulled: the other sign, or another free length";
+        let found = format!("no clamp distance above the free length, {length} m");
+        let expected = "an extension that grows with the pull: the other sign, or another free length";
         return Err(table.incomplete(&test.extension.column().name, found, expected));
     }
     let farthest = taken
@@ -147,7 +146,7 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
         return Err(Error::Setting {
             field: "zero",
             found: test.zero.to_string(),
-            expected: format!("a reading with nothing in the clamps: at most the largest force, {largest} N"),
+            expected: format!("a reading without load: at most the largest force, {largest} N"),
         });
     }
     let (mesh, pull) =
@@ -243,8 +242,8 @@ fn free_length(table: &Table, test: &StripTest, readings: &[Reading]) -> Result<
     let loading = readings.chunk_by(|a, b| a.branch == b.branch).next().unwrap_or_default();
     let length = pull::free_length(loading, force);
     length.filter(|length| SEPARATION.contains(&(length / test.gauge))).ok_or_else(|| {
-        let found = format!("a first loading that does not lead from zero through {force} N");
-        table.incomplete(&test.force.name, found, "a preload that it passes, or the free length itself")
+        let found = format!("a first loading that does not pass from zero through {force} N");
+        table.incomplete(&test.force.name, found, "a preload within its range, or the free length itself")
     })
 }
 

@@ -49,7 +49,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
             &sequence.name,
             "test.toml table.edge_point_m",
             format!(
-                "cloth that lies {:.1} mm {} the edge on its table (median of {frames} frames)",
+                "cloth that lies {:.1} mm {} the edge of its table (median of {frames} frames)",
                 1e3 * level.abs(),
                 if level > 0.0 { "above" } else { "below" }
             ),
@@ -66,14 +66,14 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         sequence: sequence.name.clone(),
         place: "test.toml table.edge_point_m".into(),
         found: format!(
-            "cloth {seen}: it begins to hang {:.1} mm {} it (median of {frames} frames; lines of vertices are {:.1} mm \
+            "cloth {seen}: it starts to hang {:.1} mm {} it (median of {frames} frames; lines of vertices are {:.1} mm \
              apart)",
             1e3 * off.abs(),
             if off < 0.0 { "before" } else { "past" },
             1e3 * apart
         ),
         expected: format!(
-            "an edge where cloth begins to hang: {:.1} mm {} along outward, in the axes of positions.npy",
+            "an edge where the cloth starts to hang: {:.1} mm {} along outward, in the axes of positions.npy",
             1e3 * off.abs(),
             if off < 0.0 { "back" } else { "on" }
         ),

@@ -43,8 +43,8 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
         notices.push(Notice::doubt(
             &sequence.name,
             "positions.npy",
-            format!("no vertex that was followed in any of {measured} frames"),
-            "shapes, which show whether the clips stood where clips.csv has them; without positions.npy if there are none",
+            format!("no vertex tracked in any of {measured} frames"),
+            "shapes, which verify the clip poses of clips.csv; omit positions.npy if there are none",
         ));
     }
 }
@@ -62,9 +62,9 @@ struct Lost {
 impl Lost {
     fn notice(&self, sequence: &str) -> Notice {
         let ways = [
-            (self.coincident, "at one and the same place as others"),
-            (self.left_behind, "where they lay at rest, away from their neighbours"),
-            (self.torn, "far away from their neighbours"),
+            (self.coincident, "at the same place as others"),
+            (self.left_behind, "at their rest position, away from their neighbours"),
+            (self.torn, "far from their neighbours"),
         ];
         let ways: Vec<String> = ways
             .iter()
@@ -83,12 +83,12 @@ impl Lost {
             sequence,
             "positions.npy",
             format!(
-                "points that were not followed, in {} frames: {} ({}{more})",
+                "lost points, in {} frames: {} ({}{more})",
                 frames.len(),
                 ways.join(", "),
                 first.join(", ")
             ),
-            "NaN where a vertex was not observed; they count as that",
+            "NaN where a vertex was not observed; these points count as unobserved",
         )
     }
 }

@@ -68,7 +68,7 @@ fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
     }
     let told = beside.len() >= FEWEST && free.sqrt() >= SURE * sequence.position_noise();
     let more = match told && both <= HELD * free {
-        true => format!(", and {} vertices beside them that were seen to move as it does", beside.len()),
+        true => format!(", and {} vertices beside them that move with it", beside.len()),
         false => String::new(),
     };
     let name = &sequence.clips[clip].name;
@@ -76,7 +76,7 @@ fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
         &sequence.name,
         "test.toml clips.vertices",
         format!("vertices of clip {name} along {:.0} % of its side{more}", 100.0 * share),
-        "all that it holds, and that the whole side: cloth beside a clip is sheared, which a fit of stretch leaves out, so \
-         that the curve comes out too stiff",
+        "all vertices it holds, along the whole side: cloth beside a clip is sheared, which a stretch fit ignores, so \
+         that the curve becomes too stiff",
     ))
 }

@@ -76,11 +76,11 @@ fn motion(sequence: &Sequence) -> Option<Notice> {
             &sequence.name,
             "clips.csv against positions.npy",
             format!(
-                "vertices in the clips that were seen to move {:.1} % {} than their poses",
+                "clip vertices that moved {:.1} % {} than their poses",
                 100.0 * off.abs(),
                 if off > 0.0 { "farther" } else { "less far" }
             ),
-            "one scale: poses and shapes of one calibration, in metres",
+            "the same scale: poses and shapes from one calibration, in metres",
         )
     })
 }

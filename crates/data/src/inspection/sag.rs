@@ -37,7 +37,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         let found =
             format!("gravity {x}, {y}, {z} is not across the table, which edge_direction and outward span");
         let expected =
-            "gravity that pulls what hangs over below the table: its axis and size, or those of the table";
+            "gravity that pulls the overhang below the table: check its axis and size, or those of the table";
         return refuse("test.toml gravity_m_s2, table", found, expected);
     };
     let profiles = profiles(sequence, &table, &up);
@@ -51,8 +51,8 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         // A cantilever under its own weight.
         if weight * longest.overhang.powi(4) / (8.0 * STIFFEST) > alike {
             let found = format!(
-                "the sheet is flat within {:.2} mm in every frame, though {:.0} mm of it hang over in frame {} and its weight \
-                 acts",
+                "the sheet is flat within {:.2} mm in every frame, despite an overhang of {:.0} mm in frame {} and its \
+                 weight",
                 1e3 * alike,
                 1e3 * longest.overhang,
                 longest.frame
@@ -65,7 +65,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     let agree = bent.iter().filter(|other| other.way() == most.way()).count();
     let Some((place, expected)) = most.way().causes().filter(|_| 2 * agree > bent.len()) else { return };
     let found = format!(
-        "the sheet bends {} and its end there lies {:.1} mm {} the other in frame {} ({agree} of {} frames alike)",
+        "the sheet bends {} and its end there lies {:.1} mm {} the other in frame {} ({agree} of {} frames agree)",
         if most.way().past { "past the edge" } else { "before the edge, on the table," },
         1e3 * most.rise.abs(),
         if most.way().below { "below" } else { "above" },
@@ -90,10 +90,10 @@ pub(super) fn check_frames(_: &Fabric, sequence: &mut Sequence, notices: &mut Ve
         &sequence.name,
         "positions.npy",
         format!(
-            "sheets that do not hang down past the edge in frame {}, unlike those of the other frames",
+            "sheets that do not hang down past the edge in frame {}, unlike in the other frames",
             shortened(&frames.join(", "), 60)
         ),
-        "one way to hang: such frames left out, or their axes as in the others",
+        "the same direction in all frames: leave these frames out, or use the axes of the others",
     ));
 }
 

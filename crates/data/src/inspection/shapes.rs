@@ -13,7 +13,7 @@ pub(super) fn check_presence(_: &Fabric, sequence: &mut Sequence, notices: &mut 
         &sequence.name,
         "positions.npy",
         "nothing",
-        "the measured shapes, there or in frames/: bending needs them",
+        "the measured shapes, there or in frames/: a bending test requires them",
     ));
 }
 
@@ -25,5 +25,10 @@ pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut V
     if sequence.kind != Kind::Shear || seen.is_empty() || !(0..3).any(|axis| alike(&axis)) {
         return;
     }
-    notices.push(Notice::remark(&sequence.name, "positions.npy", "one and the same height of every vertex in every frame: it was not measured", "heights as they were seen, which tell whether the sheet buckled: it is fitted as one that nobody saw"));
+    notices.push(Notice::remark(
+        &sequence.name,
+        "positions.npy",
+        "the same height for every vertex in every frame: it was not measured",
+        "measured heights, which show whether the sheet buckled: it is fitted as if no shapes were measured",
+    ));
 }

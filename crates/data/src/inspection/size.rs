@@ -74,7 +74,7 @@ fn specimen(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     };
     if let Some((by, unit)) = unit_of(times) {
         let expected =
-            format!("metres in both ({unit}? divide v and vt, and what else is in {unit}, by {by})");
+            format!("metres in both ({unit}? divide v and vt, and everything else in {unit}, by {by})");
         return Some((Severity::Refusal, "mesh.obj v", found, expected));
     }
     if let Some((by, unit)) = unit_of(times.map(f64::recip)) {
@@ -87,12 +87,7 @@ fn specimen(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     }
     (size[1] > LARGE).then(|| {
         let found = format!("a specimen of {}", sizes(size));
-        (
-            Severity::Doubt,
-            "mesh.obj v",
-            found,
-            format!("one of {LARGE} m at most (centimetres? divide by 100)"),
-        )
+        (Severity::Doubt, "mesh.obj v", found, format!("at most {LARGE} m (centimetres? divide by 100)"))
     })
 }
 
@@ -111,7 +106,7 @@ fn separation(sequence: &Sequence) -> Option<Finding> {
         let found =
             format!("clips {most:.3} m apart in frame {frame}, {:.1} times as far as at rest", most / rest);
         let expected =
-            "metres (centimetres? divide tx_m, ty_m and tz_m by 100), or a fabric that stretches so far";
+            "metres (centimetres? divide tx_m, ty_m and tz_m by 100), or a fabric that stretches this far";
         (Severity::Doubt, "clips.csv tx_m", found, expected.into())
     })
 }
@@ -136,7 +131,7 @@ fn areal_density(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     (counts && !AREAL_DENSITY.contains(&density)).then(|| {
         let remedy = if density > 3.0 { " (g/m²? divide by 1000)" } else { "" };
         let [low, high] = [AREAL_DENSITY.start(), AREAL_DENSITY.end()];
-        let expected = format!("{low} to {high} kg/m², as cloth has{remedy}");
+        let expected = format!("{low} to {high} kg/m², the range of cloth{remedy}");
         (Severity::Doubt, "fabric.toml areal_density_kg_m2", format!("{density} kg/m²"), expected)
     })
 }
@@ -160,7 +155,7 @@ fn material(sequence: &Sequence) -> Option<Finding> {
             100.0 * off.abs(),
             if off > 0.0 { "longer" } else { "shorter" }
         );
-        let expected = "the same lengths: v flat and free, and vt along weft and warp in metres; what differs is taken for strain";
+        let expected = "the same lengths: v flat and free, and vt along weft and warp in metres; a difference counts as strain";
         (Severity::Doubt, "mesh.obj v", found, expected.into())
     })
 }
@@ -241,7 +236,7 @@ mod tests {
         let both =
             "mesh.obj v: found a specimen of 8.000 × 4.000 m, and in fabric.toml a sample of 0.080 × 0.040 m";
         let expected =
-            "metres in both (centimetres? divide v and vt, and what else is in centimetres, by 100)";
+            "metres in both (centimetres? divide v and vt, and everything else in centimetres, by 100)";
         let found = noticed(8.0, 4.0, 1.1, 0.0, 0.3);
         assert_eq!(found, [format!("Refusal: sequence strip, {both}, expected {expected}")]);
         for (factor, unit) in [(1000.0, "millimetres"), (39.37, "inches")] {

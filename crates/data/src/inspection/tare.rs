@@ -57,8 +57,8 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
         format!("forces.csv frame {}", at_rest.first().copied().unwrap_or(0)),
         format!("{force:.3} N on clip {} before the frame is sheared", sequence.clips[clip].name),
         format!(
-            "none in the plane: load cells set to zero with nothing in them, and less than {:.0} % of the largest force, \
-             {largest:.3} N, of tension",
+            "none in the plane: load cells zeroed without load, and a tension of less than {:.0} % of the largest force, \
+             {largest:.3} N",
             100.0 * SHARE
         ),
     );

@@ -70,7 +70,7 @@ fn a_bending_test_without_shapes_is_refused() {
     let notices = noticed("bend-warp", |_, sequence| {
         sequence.frames.iter_mut().for_each(|frame| frame.positions = None);
     });
-    refused(&notices, &["positions.npy", "found nothing", "bending needs them"]);
+    refused(&notices, &["positions.npy", "found nothing", "a bending test requires them"]);
 }
 
 #[test]
@@ -124,14 +124,17 @@ fn vertices_beside_a_clip_that_move_with_it_are_told() {
             (held.len() - 1) as f64 / 0.24,
             25 - held.len()
         );
-        doubted(&notices, &["test.toml clips.vertices", &share, "seen to move as it does"]);
+        doubted(&notices, &["test.toml clips.vertices", &share, "that move with it"]);
     }
     // No observation beside the clip.
     let notices = noticed("stretch-weft", |_, sequence| {
         sequence.clips[0].vertices.truncate(23);
         sequence.frames.iter_mut().for_each(|frame| frame.positions = None);
     });
-    doubted(&notices, &["test.toml clips.vertices", "along 92 % of its side, expected all that it holds"]);
+    doubted(
+        &notices,
+        &["test.toml clips.vertices", "along 92 % of its side, expected all vertices it holds"],
+    );
     // Vertices beside the clip of a free specimen lag.
     let notices = noticed("stretch-weft", |_, sequence| {
         let clips = sequence.clips.iter_mut();
@@ -219,7 +222,9 @@ fn heights_that_were_not_measured_are_told() {
         each_place(sequence, |place| place.z = 0.0);
     });
     let [notice] = &notices[..] else { panic!("{notices:?}") };
-    assert!(notice.severity == Severity::Remark && notice.to_string().contains("one that nobody saw"));
+    assert!(
+        notice.severity == Severity::Remark && notice.to_string().contains("as if no shapes were measured")
+    );
 }
 
 #[test]
@@ -350,10 +355,10 @@ fn points_that_were_not_followed_are_left_out_and_no_others() {
         .flat_map(|frame| (0..625).filter(move |v| (v * 7 + frame * 11) % 31 == 0).map(move |v| (frame, v)))
         .collect();
     let ways: [(&str, Way); 4] = [
-        ("at one and the same place", |_, _| Vector3::zeros()),
-        ("where they lay at rest", |rest, _| rest),
-        ("where they lay at rest", |rest, _| rest.map(|c| f64::from(c as f32))),
-        ("far away from their neighbours", |_, seen| seen + Vector3::new(0.0, 0.012, 0.016)),
+        ("at the same place", |_, _| Vector3::zeros()),
+        ("at their rest position", |rest, _| rest),
+        ("at their rest position", |rest, _| rest.map(|c| f64::from(c as f32))),
+        ("far from their neighbours", |_, seen| seen + Vector3::new(0.0, 0.012, 0.016)),
     ];
     for (said, way) in ways {
         let mut sequence = clean.clone();
@@ -381,7 +386,7 @@ fn shapes_that_were_lost_in_every_frame_are_doubted() {
     lose(&mut sequence.frames[0]);
     let notices = inspect_sequence(&fabric, &sequence).1;
     let doubt = notices.iter().find(|notice| notice.severity == Severity::Doubt).unwrap().to_string();
-    assert!(doubt.contains("positions.npy") && doubt.contains("no vertex that was followed"), "{doubt}");
+    assert!(doubt.contains("positions.npy") && doubt.contains("no vertex tracked"), "{doubt}");
 }
 
 #[test]

@@ -29,13 +29,13 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     notices.extend(unbalanced(sequence));
     if let Some(weight) = Weight::of(fabric, sequence).filter(Weight::disagrees) {
         notices.push(Notice::doubt(&sequence.name, "forces.csv", format!(
-                "cords that bear {:.3} N against gravity, where the cloth ({:.1} g) and the clips ({:.1} g) weigh {:.3} N",
+                "cords that carry {:.3} N against gravity, while the cloth ({:.1} g) and the clips ({:.1} g) weigh {:.3} N",
                 weight.borne,
                 1e3 * weight.cloth,
                 1e3 * weight.clips,
                 weight.expected()
             ), "the same: the unit or calibration of forces.csv, areal_density_kg_m2 of fabric.toml, mass_kg of the clips or \
-                       gravity_m_s2 in test.toml, or forces that were set to zero under load"));
+                       gravity_m_s2 in test.toml, or forces zeroed under load"));
     }
 }
 
@@ -69,10 +69,10 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
             &sequence.name,
             "test.toml gravity_m_s2",
             format!(
-                "cords that pull the specimen alike in every frame, by {:.3}, {:.3}, {:.3} N, across gravity",
+                "cords that pull the specimen equally in every frame, by {:.3}, {:.3}, {:.3} N, across gravity",
                 usual.x, usual.y, usual.z
             ),
-            "gravity against it, if it is weight that they bear: gravity_m_s2, in the axes of forces.csv",
+            "gravity opposite to it, if they carry weight: gravity_m_s2, in the axes of forces.csv",
         ));
     }
     let sum = sum.norm();
@@ -80,7 +80,7 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
         &sequence.name,
         "forces.csv",
         format!(
-            "cords that pull the specimen to one side in {off} of {count} frames, most in frame {index}, by {sum:.3} N where the \
+            "cords that pull the specimen to one side in {off} of {count} frames, most in frame {index}, by {sum:.3} N; the \
              largest force is {largest:.3} N"
         ),
         "forces that add up to zero across gravity: the calibration of each load cell, or cords that forces.csv leaves \
@@ -113,14 +113,14 @@ pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
         let stretched = matches!(other.kind, Kind::StretchWeft | Kind::StretchWarp | Kind::StretchBias);
         if stretched && ratio && Weight::of(&set.fabric, other).is_none() {
             let times = weight.borne / weight.expected();
-            let found = format!("a load cell that in {} reads {times:.3} times the weight", first.name);
+            let found = format!("a load cell that reads {times:.3} times the weight in {}", first.name);
             let expected = "1, if it is the same cell: the unit or the calibration of forces.csv";
             doubt(other, "forces.csv", found, expected);
         }
         if let Some(share) = weight.cloth_share().filter(|_| other.table.is_some() && density) {
             let told = set.fabric.areal_density_kg_m2;
             let found = format!(
-                "{told} kg/m², where the cords of {} bear what {:.3} kg/m² would weigh",
+                "{told} kg/m², while the cords of {} carry the weight of {:.3} kg/m²",
                 first.name,
                 share * told
             );

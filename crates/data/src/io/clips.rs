@@ -85,7 +85,7 @@ fn rotation(
     // The error of the length estimates that of the direction; the last digits always carry rounding.
     if error > 1e-14 && error * reach > MOVED {
         let found = format!("a quaternion whose length errs by {error:.1e}, {reach:.0} m from the origin");
-        let expected = "more digits, or an origin nearby: poses turn about it";
+        let expected = "more digits, or a nearer origin: poses rotate about it";
         return Err(table.invalid(row, "qw,qx,qy,qz", found, expected));
     }
     Ok(if error < 1e-14 {

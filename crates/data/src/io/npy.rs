@@ -63,7 +63,7 @@ pub(super) fn read(path: &Path, vertices: usize) -> Result<Vec<Shape>> {
     // Infinite values are refused later, where frame and vertex are known.
     if size == 4 && largest > FAR && largest.is_finite() {
         let found = format!("float32 coordinates of {largest:.0} m");
-        let expected = "float64 so far away, or an origin nearby (or millimetres? then divide by 1000)";
+        let expected = "float64 at this distance, or a nearer origin (millimetres? divide by 1000)";
         return Err(refuse("data", found, expected));
     }
     Ok(shapes)

@@ -133,7 +133,7 @@ pub(super) fn shape(mesh: &Mesh, positions: &[Vector3<f64>]) -> String {
 fn check_size(path: &Path, element: &ElementDef, bytes: usize) -> Result<()> {
     if element.properties.is_empty() {
         let field = format!("element {}", shown(&element.name));
-        return Err(Error::input(path, None, field, "no property", "one at least"));
+        return Err(Error::input(path, None, field, "no property", "at least one"));
     }
     if element.count > bytes {
         let field = format!("element {}", shown(&element.name));
@@ -142,7 +142,7 @@ fn check_size(path: &Path, element: &ElementDef, bytes: usize) -> Result<()> {
             None,
             field,
             element.count.to_string(),
-            "as many rows as the file holds",
+            "at most the number of rows in the file",
         ));
     }
     Ok(())

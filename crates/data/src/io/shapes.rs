@@ -77,7 +77,7 @@ fn read_files(folder: &Path, vertices: usize) -> Result<Vec<(PathBuf, Shape)>> {
             None,
             "file",
             format!("frame {found}"),
-            format!("frame {expected}: none may miss"),
+            format!("frame {expected}: frames are numbered without gaps"),
         ));
     }
     let read = |path: PathBuf| {

@@ -17,7 +17,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     let failed = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => Error::input(path, None, "file", "nothing", "a file"),
         ErrorKind::PermissionDenied => {
-            Error::input(path, None, "file", "no permission to read it", "a file that you may read")
+            Error::input(path, None, "file", "no permission to read it", "a readable file")
         }
         _ => Error::io(path, error),
     };

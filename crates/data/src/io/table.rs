@@ -136,7 +136,7 @@ impl Table {
             (Some(place), None) => Ok(place),
             (Some(_), Some(_)) => {
                 let found = format!("{} twice", shown(name));
-                Err(self.bad_header("header", found, "every column that is asked for once"))
+                Err(self.bad_header("header", found, "every requested column once"))
             }
             (None, _) => {
                 let names = shortened(&self.header.iter().collect::<Vec<_>>().join(", "), 300);
@@ -403,7 +403,7 @@ mod tests {
         let table = read("time,travel,time,,force\n0,1,0,,2\n").unwrap();
         assert_eq!(table.number(0, 4).unwrap(), 2.0);
         let twice = message("travel,force,force\n0,1,2\n");
-        assert_eq!(twice, "t.csv:1 header: found force twice, expected every column that is asked for once");
+        assert_eq!(twice, "t.csv:1 header: found force twice, expected every requested column once");
     }
 
     #[test]

@@ -59,7 +59,7 @@ pub(super) fn read(path: &Path, vertices: usize) -> Result<TestFile> {
     }
     match (test.clips.is_empty(), bends(test.kind)) {
         (false, true) => Err(file.invalid("clips", "[[clips]]", "none for a bending test")),
-        (true, false) => Err(file.invalid("clips", "nothing", "[[clips]], one at least")),
+        (true, false) => Err(file.invalid("clips", "nothing", "at least one [[clips]]")),
         _ => check_clips(&file, &test.clips, vertices),
     }?;
     Ok(test)
@@ -122,7 +122,7 @@ fn check_clips(file: &TomlFile, clips: &[Clip], vertices: usize) -> Result<()> {
             return refuse("name", format!("{} twice", shown(name)), "another name for every clip");
         }
         if !(clip.mass_kg >= 0.0 && clip.mass_kg.is_finite()) {
-            return refuse("mass_kg", clip.mass_kg.to_string(), "a mass, 0 at least");
+            return refuse("mass_kg", clip.mass_kg.to_string(), "a mass of 0 or more");
         }
         if clip.vertices.is_empty() {
             return refuse("vertices", "nothing".into(), "the vertices that the clip holds");

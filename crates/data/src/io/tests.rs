@@ -158,7 +158,7 @@ fn what_cannot_be_read_is_not_written() {
     let twice = MeasurementSet { sequences: vec![stretch(), bend()], ..set() };
     assert_eq!(
         write_set(&place, &twice).unwrap_err().to_string(),
-        "sequences[].name: found stretch-weft before bend, expected every name once, in order"
+        "sequences[].name: found stretch-weft before bend, expected unique names in ascending order"
     );
     let other = folder.path().join("home");
     fs::create_dir(&other).unwrap();

@@ -66,6 +66,6 @@ pub(super) fn conversion(found: &str, expected: &str) -> String {
     match (split(&found).1, split(expected).1) {
         (Some(from), Some(to)) if from != to => format!("convert {from} to {to}{per_width}"),
         (None, Some(to)) => format!("the values in {to}, the unit in the name"),
-        _ => "the name exactly so".into(),
+        _ => "exactly this name".into(),
     }
 }

@@ -11,7 +11,7 @@ pub(super) const SEPARATION: RangeInclusive<f64> = 0.5..=10.0;
 pub(super) fn chosen_rows(table: &Table, rows: Option<&RangeInclusive<usize>>) -> Result<Range<usize>> {
     let count = table.rows();
     if count == 0 {
-        return Err(table.incomplete("row", "nothing below the header", "one row at least"));
+        return Err(table.incomplete("row", "nothing below the header", "at least one row"));
     }
     let Some(rows) = rows else { return Ok(0..count) };
     let (first, last) = (*rows.start(), *rows.end());

@@ -162,7 +162,7 @@ impl StripTest {
             return refuse("every", "0".into(), "1 for every row, 2 for every second, …");
         }
         if self.branches.as_ref().is_some_and(Vec::is_empty) {
-            return refuse("branches", "none".into(), "one branch at least");
+            return refuse("branches", "none".into(), "at least one branch");
         }
         match self.force_noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
             Some(noise) => refuse("force_noise", noise.to_string(), "a standard deviation above 0, in N"),

@@ -207,7 +207,7 @@ fn a_preload_is_followed_down_to_the_free_length() {
             assert!((strip(&text, &with(preload)).free_length - 0.078).abs() < 1e-9);
         }
         let error = read(&text, &with(90.0)).unwrap_err().to_string();
-        assert!(error.contains("does not lead from zero through 90 N"), "{error}");
+        assert!(error.contains("does not pass from zero through 90 N"), "{error}");
     }
 }
 
@@ -242,7 +242,7 @@ fn rows_after_a_breakage_are_left_out_and_the_last_one_before_is_named() {
     };
     let mut strip = strip(&text, &test);
     let notices = strip.inspect(None);
-    let broken = notices.iter().find(|notice| notice.found.contains("it broke, or slipped")).unwrap();
+    let broken = notices.iter().find(|notice| notice.found.contains("it broke or slipped")).unwrap();
     assert_eq!((broken.severity, broken.place.as_str()), (Severity::Remark, "t.csv row 59"));
     assert_eq!((strip.rows().len(), strip.rows().last()), (29, Some(&59)));
     assert_eq!((strip.sequence.frames.len(), strip.branches()), (30, vec![0]));
@@ -276,7 +276,7 @@ fn bad_tables_are_refused() {
     );
     assert_eq!(
         message("clamp_distance_m,force_N\n", &test()),
-        "t.csv row: found nothing below the header, expected one row at least"
+        "t.csv row: found nothing below the header, expected at least one row"
     );
 }
 
@@ -345,11 +345,10 @@ fn a_unit_is_never_guessed() {
 #[test]
 fn a_strip_that_only_gets_shorter_and_a_zero_that_no_reading_reaches_are_refused() {
     let shrinking = StripTest { free_length: FreeLength::Length(0.12), ..test() };
-    let words = "t.csv clamp_distance_m: found no clamps farther apart than the free length, 0.12 m, expected an extension \
-                 that grows where the strip is pulled: the other sign, or another free length";
+    let words = "t.csv clamp_distance_m: found no clamp distance above the free length, 0.12 m, expected an extension \
+                 that grows with the pull: the other sign, or another free length";
     assert_eq!(message(&plain(), &shrinking), words);
-    let words =
-        "zero: found 2, expected a reading with nothing in the clamps: at most the largest force, 0.8 N";
+    let words = "zero: found 2, expected a reading without load: at most the largest force, 0.8 N";
     assert_eq!(message(&plain(), &StripTest { zero: 2.0, ..test() }), words);
 }
 
@@ -360,7 +359,8 @@ fn a_machine_that_would_lengthen_as_far_as_it_went_is_doubted() {
     fs::write(&path, plain()).unwrap();
     let notices = |compliance| read_strip(&path, &StripTest { compliance, ..test() }).unwrap().inspect(None);
     // 0.8 N at 16 mm.
-    let said = |notice: &Notice| notice.found.contains("a compliance that takes off 40 % of the extension");
+    let said =
+        |notice: &Notice| notice.found.contains("a compliance that accounts for 40 % of the extension");
     assert!(notices(8e-3).iter().any(said) && !notices(1e-3).iter().any(|n| n.found.contains("compliance")));
 }
 
@@ -399,7 +399,7 @@ fn bad_settings_are_refused() {
     );
     check(
         StripTest { branches: Some(vec![]), ..test() },
-        "branches: found none, expected one branch at least",
+        "branches: found none, expected at least one branch",
     );
     check(
         StripTest { force_noise: Some(0.0), ..test() },

@@ -67,12 +67,12 @@ impl Breakage {
     pub(super) fn notice(&self, pull: &Pull) -> Notice {
         let [last, fallen] = [self.last, self.fallen].map(|row| &pull.readings[row]);
         let found = format!(
-            "{} N with the clamps {:.2} mm apart, and then {} N while the strip gets longer: it broke, or slipped",
+            "{} N with the clamps {:.2} mm apart, then {} N while the strip gets longer: it broke or slipped",
             digits(last.force, 3),
             1e3 * last.separation,
             digits(fallen.force, 3),
         );
-        let expected = "force that rises: what follows is left out".into();
+        let expected = "force that rises: later readings are left out".into();
         pull.notice(Severity::Remark, last, found, expected)
     }
 }

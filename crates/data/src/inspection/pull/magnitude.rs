@@ -48,7 +48,7 @@ pub(super) fn check(pull: &Pull, areal_density: f64) -> Option<Notice> {
     let off = |(_, unit): &&(&str, f64)| (unit * stiffness / (COMMON * areal_density)).ln().abs();
     let likely =
         UNITS.iter().filter(|unit| off(unit) <= f64::ln(LIKELY)).min_by(|a, b| off(a).total_cmp(&off(b)));
-    let likely = likely.map_or(String::new(), |(name, _)| format!(" (as {name} it would do)"));
+    let likely = likely.map_or(String::new(), |(name, _)| format!(" ({name} would be plausible)"));
     let expected = format!(
         "{lowest:.1} to {:.0e} N/m, and a stress of at most {:.1e} N/m of a cloth of {areal_density} kg/m²: \
          another unit than N{likely}, or another width",

@@ -54,7 +54,7 @@ fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
     let sure = force.abs() > SHARE * reading.force.abs() + 4.0 * start.error(pull.gauge)?;
     if close && sure && matters(pull, force, length.map(|length| pull.gauge - length)) {
         let found = format!(
-            "first readings that come to {} N at the gauge length, {:.2} mm",
+            "first readings that extrapolate to {} N at the gauge length, {:.2} mm",
             digits(force, 3),
             1e3 * pull.gauge
         );
@@ -75,8 +75,8 @@ fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
             1e3 * pull.gauge
         );
         let expected = format!(
-            "readings from rest on: of these the first tell the free length to ± {:.2} mm only, which makes the stress there ± \
-             {:.0} % unsure beside its band, if it is not known otherwise",
+            "readings from rest on: the first of these give the free length to ± {:.2} mm only, which makes the stress there ± \
+             {:.0} % uncertain in addition to its band, unless it is known otherwise",
             1e3 * unsure,
             100.0 * share
         );
@@ -107,7 +107,7 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
         notices.push(pull.notice(Severity::Doubt, taut, found, expected));
     }
     if length < pull.gauge - near {
-        let found = format!("force from {:.2} mm between the clamps on", 1e3 * length);
+        let found = format!("force from a clamp distance of {:.2} mm on", 1e3 * length);
         let expected = format!("none below {gauge}: {}", free_length(length));
         notices.push(pull.notice(Severity::Doubt, first, found, expected));
     }
@@ -149,11 +149,13 @@ fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Opt
     // An extrapolation that leaves the plausible range gives no length.
     let tension = match length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length)) {
         Some((length, unsure)) => format!(
-            "the strip was put in under tension, {}, where a parabola through the first readings comes to zero{}",
+            "the strip was mounted under tension, {}, where a parabola through the first readings reaches zero{}",
             free_length(length),
             unsure.map_or(String::new(), |unsure| format!(", ± {:.2} mm", 1e3 * unsure))
         ),
-        None => "the strip was put in under tension, and its free length cannot be told from this".into(),
+        None => {
+            "the strip was mounted under tension, and these readings do not determine its free length".into()
+        }
     };
     let is = |level: f64| slack.is_some_and(|slack| (slack - level).abs() <= pull.threshold());
     if force < 0.0 || is(force) {
@@ -161,7 +163,7 @@ fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Opt
     } else if is(0.0) {
         tension
     } else {
-        format!("{tension}; or {zero}: what it reads with nothing in it tells which")
+        format!("{tension}; or {zero}: its unloaded reading tells which")
     }
 }
 

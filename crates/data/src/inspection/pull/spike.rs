@@ -47,7 +47,7 @@ pub(super) fn notice(pull: &Pull, spikes: &[usize]) -> Option<Notice> {
         [] => String::new(),
         others => {
             let numbers: Vec<_> = others.iter().map(|&row| pull.readings[row].number.to_string()).collect();
-            format!(", and the like at {}", crate::io::shortened(&numbers.join(", "), 60))
+            format!(", and likewise at {}", crate::io::shortened(&numbers.join(", "), 60))
         }
     };
     let found = format!("{} N far off the readings before and after{others}", digits(reading.force, 4));

@@ -53,7 +53,7 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     let [slip, back] = [slip, back].map(|row| row.map(|row| (&pull.readings[row - 1], &pull.readings[row])));
     let tell = |(a, b): (&Reading, &Reading), what: &str, expected: &str| {
         let found = format!(
-            "{} N with the clamps {:.2} mm apart, and then {} N at {:.2} mm: {what}",
+            "{} N with the clamps {:.2} mm apart, then {} N at {:.2} mm: {what}",
             digits(a.force, 3),
             1e3 * a.separation,
             digits(b.force, 3),
@@ -65,14 +65,14 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
         tell(
             pair,
             "the strip slipped, yarns broke, or it relaxed while the pull paused",
-            "force that rises while a strip gets longer: rows up to there",
+            "force that rises while the strip gets longer: use the rows up to there",
         )
     });
     let back = back.map(|pair| {
         tell(
             pair,
-            "was the extension set back?",
-            "force that falls where the clamps go back: one extension, set to zero once",
+            "was the extension reset?",
+            "force that falls while the clamps move back: an extension zeroed only once",
         )
     });
     slip.into_iter().chain(back).chain(saturated(pull, still)).collect()
@@ -83,7 +83,7 @@ fn saturated(pull: &Pull, still: f64) -> Option<Notice> {
     let largest = pull.readings.iter().map(|reading| reading.force).fold(f64::MIN, f64::max);
     let mut runs = pull.readings.chunk_by(|a, b| a.force == b.force && b.separation - a.separation > still);
     let run = runs.find(|run| run.len() >= ALIKE && run[0].force == largest)?;
-    let found = format!("{} N in {} readings, though the strip gets longer", digits(largest, 4), run.len());
-    let expected = "force that rises: was that all that the load cell can read? then rows up to there";
+    let found = format!("{} N in {} readings, although the strip gets longer", digits(largest, 4), run.len());
+    let expected = "force that rises: if the load cell reached its limit, use the rows up to there";
     Some(pull.notice(Severity::Doubt, &run[0], found, expected.into()))
 }

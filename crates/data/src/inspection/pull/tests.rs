@@ -190,7 +190,7 @@ fn a_tension_at_the_gauge_length_is_noticed_with_the_free_length() {
         assert!((number(&words, "--free-length-m ") - length).abs() < 1e-4, "{words}");
         assert!(words.contains("--zero 2.0") || words.contains("--zero 1.99"), "{words}");
         let off = 1e3 * (number(&words, "--free-length-m ") - length).abs();
-        inside += u64::from(off <= number(&words, "comes to zero, ± "));
+        inside += u64::from(off <= number(&words, "reaches zero, ± "));
     }
     assert!((SEEDS - 3..=SEEDS).contains(&inside), "{inside} of {SEEDS} within what is told");
 }
@@ -217,7 +217,7 @@ fn a_tension_that_is_a_small_share_of_the_force_is_noticed_where_it_shifts_the_s
     let strong = |s: f64| 0.05 * (400.0 * (s / length - 1.0) + 4e5 * (s / length - 1.0).powi(3));
     let rows: Vec<[f64; 2]> = course(GAUGE, 0.25, 200).into_iter().map(|s| [s, strong(s)]).collect();
     let (_, words) = doubt(&noisy(&rows, 1));
-    assert!(words.contains("put in under tension"), "{words}");
+    assert!(words.contains("mounted under tension"), "{words}");
 }
 
 #[test]
@@ -235,7 +235,7 @@ fn a_slack_strip_is_noticed_with_the_free_length() {
 
 #[test]
 fn a_zero_that_is_off_is_told_from_tension_where_the_strip_was_seen_slack() {
-    let both = ["put in under tension", "zero is off"];
+    let both = ["mounted under tension", "zero is off"];
     let causes = |words: &str| both.map(|cause| words.contains(cause));
     for seed in 0..SEEDS {
         // Neither cause can be excluded.
@@ -304,14 +304,14 @@ fn steps_that_contradict_the_way_of_the_clips_are_named() {
     for (rows, frame, said) in [
         (noisy(&slipped, 1), 61, "slipped"),
         (noisy(&slipped, 2), 61, "slipped"),
-        (saturated, 84, "load cell can read"),
+        (saturated, 84, "load cell reached its limit"),
     ] {
         let (at, words) = doubt(&rows);
         assert!(words.contains(said) && at.parse::<i32>().unwrap().abs_diff(frame) <= 1, "{at}: {words}");
     }
     let all = noticed(&noisy(&set_back, 1));
     assert!(
-        all.iter().any(|(_, at, words)| words.contains("was the extension set back?") && at == "61"),
+        all.iter().any(|(_, at, words)| words.contains("was the extension reset?") && at == "61"),
         "{all:?}"
     );
 }
@@ -323,7 +323,7 @@ fn a_strip_without_a_reading_at_rest_is_followed_down_to_it() {
     };
     for seed in 0..SEEDS {
         let (_, words) = doubt(&noisy(&from(1e-3, &|s| law(s, GAUGE) + 1.0), seed));
-        assert!(words.contains("come to 1.0") || words.contains("come to 0.9"), "{words}");
+        assert!(words.contains("extrapolate to 1.0") || words.contains("extrapolate to 0.9"), "{words}");
         let (_, words) = doubt(&noisy(&from(3.2e-3, &|s| law(s, GAUGE + 3e-3)), seed));
         assert!(words.contains("the strip was slack"), "{words}");
         assert!((number(&words, "--free-length-m ").abs() - 0.203).abs() < 2e-4, "{words}");
@@ -343,7 +343,7 @@ fn a_spike_is_named_and_nothing_else_is_blamed() {
         let mut rows = noisy(&loading(|s| law(s, GAUGE)), seed);
         (rows[30][1], rows[31][1], rows[70][1]) = (80.0, 75.0, 0.0);
         let (frame, words) = doubt(&rows);
-        assert!(frame == "31" && words.contains("the like at 32, 71;"), "{words}");
+        assert!(frame == "31" && words.contains("likewise at 32, 71;"), "{words}");
     }
 }
 
@@ -366,7 +366,7 @@ fn numbers_have_the_digits_that_count() {
 fn forces_of_another_unit_are_noticed() {
     for (factor, unit) in [(1e-6, "MN"), (1e-3, "kN"), (1e3, "mN"), (1e6, "µN")] {
         let (frame, words) = doubt(&loading(|s| factor * law(s, GAUGE)));
-        assert!(frame == "101" && words.contains(&format!("as {unit} it would do")), "{words}");
+        assert!(frame == "101" && words.contains(&format!("{unit} would be plausible")), "{words}");
     }
 }
 

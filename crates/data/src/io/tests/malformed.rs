@@ -174,7 +174,7 @@ fn test_file() {
             (
                 "mass_kg = 0.0133",
                 "mass_kg = -0.0133",
-                ":10 clips[0].mass_kg: found -0.0133, expected a mass, 0 at least",
+                ":10 clips[0].mass_kg: found -0.0133, expected a mass of 0 or more",
             ),
             (
                 "mass_kg = 0.0133",
@@ -577,11 +577,11 @@ fn shapes() {
         ),
         (
             &far,
-            "bend/positions.npy data: found float32 coordinates of 1000001 m, expected float64 so far away, or an origin nearby (or millimetres? then divide by 1000)",
+            "bend/positions.npy data: found float32 coordinates of 1000001 m, expected float64 at this distance, or a nearer origin (millimetres? divide by 1000)",
         ),
         (
             &unseen,
-            "bend/positions.npy file: found no observed vertex in frame 1, expected one at least in every frame",
+            "bend/positions.npy file: found no observed vertex in frame 1, expected at least one in every frame",
         ),
         (
             &|place| fs::create_dir(place.join("bend/frames")).unwrap(),
@@ -590,7 +590,7 @@ fn shapes() {
         (&files(&[]), "corners/frames folder: found no file, expected 0000.obj, 0001.obj, … or .ply"),
         (
             &files(&["0000.obj", "0002.obj"]),
-            "corners/frames/0002.obj file: found frame 2, expected frame 1: none may miss",
+            "corners/frames/0002.obj file: found frame 2, expected frame 1: frames are numbered without gaps",
         ),
         (
             &files(&["0000.obj", "0.ply"]),
@@ -647,11 +647,11 @@ fn shapes() {
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 999999999999\nproperty float x\nend_header\n"),
-            "corners/frames/0.ply element vertex: found 999999999999, expected as many rows as the file holds",
+            "corners/frames/0.ply element vertex: found 999999999999, expected at most the number of rows in the file",
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 9\nend_header\n"),
-            "corners/frames/0.ply element vertex: found no property, expected one at least",
+            "corners/frames/0.ply element vertex: found no property, expected at least one",
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement face 0\nproperty float x\nend_header\n"),
@@ -710,7 +710,7 @@ fn files_and_folders() {
         ),
         (
             &copy("corners/clips.csv", "bend/clips.csv"),
-            "bend/clips.csv file: found clips.csv in a bend-bias test, expected none: nothing is clipped in bending",
+            "bend/clips.csv file: found clips.csv in a bend-bias test, expected none: bending tests have no clips",
         ),
         (&huge, "fabric.toml file: found 3221225472 bytes, expected at most 2 GiB"),
         (&socket, "fabric.toml file: found a pipe, socket or device, expected a regular file"),
