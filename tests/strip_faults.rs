@@ -1,7 +1,8 @@
 //! Strips with a typical recording fault each: uncorrected, the curve is wrong; the correction named in the notice
 //! fixes it.
 //!
-//! Specimen: 0.2 × 0.05 m, 2000 ε + 20000 ε² N/m of engineering strain, noise of 5 mN, pulled by 20 mm in steps of 0.2 mm.
+//! Specimen: 0.2 × 0.05 m, 2000 ε + 20000 ε² N/m of engineering strain, noise of 5 mN, pulled by 20 mm in steps of
+//! 0.2 mm.
 //! Tolerance: stiffness at zero within 3 %, stress at 0.0495 within 1 % of 148.0 N/m.
 
 use cloth_data::notice::Severity;

@@ -1,5 +1,5 @@
-//! Source: bias extension. A glass and polypropylene plain weave (cao2008_bias_extension/, Cao et al. 2008, figure 38), and
-//! the bias strips of a cotton knit and a cupro weave in a tensile machine (u3m_fab_*/B_S2.csv).
+//! Source: bias extension. A glass and polypropylene plain weave (cao2008_bias_extension/, Cao et al. 2008, figure
+//! 38), and the bias strips of a cotton knit and a cupro weave in a tensile machine (u3m_fab_*/B_S2.csv).
 //!
 //! Goal: the bias sets that determine a shear curve, their reference values, and the agreement of the fit.
 //!

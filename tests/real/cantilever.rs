@@ -8,8 +8,8 @@
 //!             W   ╲
 //! ```
 //!
-//! Parameters: tip and clamp within 1e-5 of their values, shapes within 1e-5 of the length. The cloth, 36 cells along a strip of
-//! 90 mm × 30 mm: H/W within 2 %, at Γ = 100 within 3 %.
+//! Parameters: tip and clamp within 1e-5 of their values, shapes within 1e-5 of the length. The cloth, 36 cells along
+//! a strip of 90 mm × 30 mm: H/W within 2 %, at Γ = 100 within 3 %.
 
 use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::material::Model;

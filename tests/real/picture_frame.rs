@@ -10,8 +10,9 @@
 //! ```
 //!
 //! Parameters: the force along each bar F / (2 cos(π/4 − γ/2)) is the files' stress times the side within 1e-6, the
-//! diagonals within 1e-8. Wool: five control points at most, force residual ≤ 0.6 % of the largest force, stress within 1 %
-//! (relative L2 over the frames' strains). Constant: simulated forces within 1e-8, and so the fitted stiffness.
+//! diagonals within 1e-8. Wool: five control points at most, force residual ≤ 0.6 % of the largest force, stress
+//! within 1 % (relative L2 over the frames' strains). Constant: simulated forces within 1e-8, and so the fitted
+//! stiffness.
 
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::measure::{clamped, effective_shear};

@@ -1,7 +1,7 @@
 //! A curve as a table of stress over strain, or moment over curvature, and its conversion to a simulation curve.
 //!
 //! ```text
-//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ            or as a fit names them
+//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ     or as a fit names them
 //! bending           curvature_per_m, moment_n        εᵢ = 3 × curvature     kᵢ = Mᵢ/εᵢ      hinges of a regular grid
 //! ```
 //!

@@ -34,7 +34,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
 /// Drops the frames after a breakage and reports every notice.
 ///
 /// * `areal_density` — kg/m²; given, the magnitude of the forces is checked too
-/// * `counted` — what the frame numbers count
+/// * `counted` — meaning of the frame numbers, e.g. `forces.csv frame`
 /// * `numbers` — one per frame
 pub(crate) fn inspect(
     sequence: &mut Sequence,

@@ -1,6 +1,6 @@
 //! Simulates the sheet in every frame of a test.
 //!
-//! By continuation: each frame starts from the previous equilibrium, moved with the support. A sheet that has buckled
+//! Uses continuation: each frame starts from the previous equilibrium, moved with the support. A sheet that has buckled
 //! to one side therefore stays there, as in the laboratory.
 
 use super::fabric::KnownFabric;

@@ -25,7 +25,7 @@ pub(crate) struct Reading {
 pub(super) struct Pull {
     /// Name of the sequence.
     pub(super) sequence: String,
-    /// What the reading numbers count, e.g. `forces.csv frame`.
+    /// Meaning of the reading numbers, e.g. `forces.csv frame`.
     pub(super) counted: String,
     /// Free length between the clips at rest, m.
     pub(super) gauge: f64,
