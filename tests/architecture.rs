@@ -1,8 +1,8 @@
-//! Imports run one way: no file of a crate uses, over whatever detour, a file that uses it.
+//! Checks that imports are acyclic: no file of a crate uses, directly or indirectly, a file that uses it.
 //!
-//! An arrow leads from a file to each other file that defines a name which it takes, by `use` (a façade's `pub use` too) or
-//! by a path in its code. `mod` alone is no arrow, and tests are left out. The arrows among the top-level modules of the
-//! libraries stand in docs/architecture.md.
+//! An arrow leads from a file to each other file that defines a name it uses, by `use` (including `pub use` of a
+//! façade) or by a path in its code. `mod` alone is not an arrow, and tests are excluded. docs/architecture.md shows
+//! the arrows between the top-level modules of the libraries.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,19 +12,19 @@ use syn::{Item, ItemMod, ItemUse, UseTree, Visibility};
 /// `a::b` of a crate; empty = its root.
 type Module = Vec<String>;
 
-/// The libraries, from the bottom up.
+/// The libraries, ordered from the bottom up.
 const LIBRARIES: [&str; 5] = ["sim", "data", "fit", "scene", "study"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// What one file takes.
+/// Names used by one file.
 #[derive(Default)]
 struct Taken {
-    /// Names that it brings in, with the paths that they stand for.
+    /// Imported names with the paths they stand for.
     uses: Vec<(String, Vec<String>)>,
-    /// Other paths in its code.
+    /// Other paths in the code.
     paths: Vec<Vec<String>>,
 }
 
@@ -70,7 +70,7 @@ impl<'ast> Visit<'ast> for Taken {
     }
 }
 
-/// The files of a crate by their modules.
+/// Files of a crate by module.
 fn files(src: &Path) -> BTreeMap<Module, Taken> {
     fn walk(folder: &Path, module: &Module, found: &mut BTreeMap<Module, Taken>) {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -99,7 +99,7 @@ fn files(src: &Path) -> BTreeMap<Module, Taken> {
     found
 }
 
-/// A path as it stands in a module, from the crate's root; `None` if it leads elsewhere.
+/// Resolves a path within a module to the crate root; `None` if it leads outside the crate.
 fn absolute(files: &BTreeMap<Module, Taken>, module: &Module, path: &[String]) -> Option<Vec<String>> {
     match path[0].as_str() {
         "crate" => Some(path[1..].to_vec()),
@@ -115,7 +115,7 @@ fn absolute(files: &BTreeMap<Module, Taken>, module: &Module, path: &[String]) -
     }
 }
 
-/// The file that defines what a path names, through whatever names lead there; `None` if that is another crate's.
+/// File that defines the target of a path, re-exports followed; `None` if it belongs to another crate.
 fn definer(files: &BTreeMap<Module, Taken>, path: &[String], detours: usize) -> Option<Module> {
     if files.contains_key(path) {
         return Some(path.to_vec());
@@ -143,7 +143,7 @@ fn arrows(files: &BTreeMap<Module, Taken>) -> Arrows {
     files.iter().map(of).collect()
 }
 
-/// Every module that some module comes to along arrows.
+/// All modules reachable from a module along arrows.
 fn reached(arrows: &Arrows, from: &Module) -> BTreeSet<Module> {
     let mut reached = BTreeSet::new();
     let mut open = vec![from.clone()];
@@ -168,8 +168,8 @@ fn no_file_uses_a_file_that_uses_it() {
     }
 }
 
-/// A row for each top-level module with what it uses of its crate, less what these use already; those that use nothing in
-/// the first row.
+/// One row per top-level module with the modules of its crate that it uses directly, omitting those reachable through
+/// the others; modules without any in the first row.
 fn drawing() -> String {
     let mut text = String::new();
     for name in LIBRARIES {

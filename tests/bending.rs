@@ -1,4 +1,4 @@
-//! Bending from shapes that no cloth code made: a square pushed off a table hangs as a heavy elastica.
+//! Bending from shapes computed without cloth code: a square pushed off a table hangs as a heavy elastica.
 //!
 //! ```text
 //!  ▒▒▒▒▒▒▒▒───╮        100 mm square on 25×25 nodes, overhangs of 50 to 85 mm that end between rows of the grid
@@ -6,8 +6,8 @@
 //!  table  ▒     │
 //! ```
 //!
-//! The flexural rigidity comes back within 3 % up to Γ = 30, within 6 % at 100, without noise; with 0.075 mm within 10 %.
-//! So does a moment law that is no straight line, as the relative L2 error over the visited range.
+//! The fit recovers the flexural rigidity within 3 % up to Γ = 30 and within 6 % at 100, without noise; with 0.075 mm
+//! within 10 %. The same holds for a nonlinear moment law, as the relative L2 error over the visited range.
 
 use cloth_data::frame::Kind;
 use cloth_fit::incremental::{FitReport, Stage, fit};
@@ -70,7 +70,7 @@ fn the_heavy_elastica_comes_back() {
 #[test]
 fn a_moment_law_that_is_no_line_comes_back() {
     let [low, high] = [rigidity(100.0), rigidity(20.0)];
-    // Softer where it is bent more.
+    // Softer at larger curvature.
     let moment = |curvature: f64| low * curvature + (high - low) * 8.0 * (curvature / 8.0).tanh();
     for (kind, component) in [
         (Kind::BendWeft, Component::BendWeft),
@@ -95,7 +95,7 @@ fn a_moment_law_that_is_no_line_comes_back() {
 fn what_lies_flat_is_not_observed() {
     let moment = |curvature: f64| 1e-5 * curvature;
     let report = fit_bending(Kind::BendWeft, &moment, Some(1), Variant::Linear, Model::Stvk);
-    // A sheet that bends along weft leaves its diagonal hinges flat.
+    // A sheet bent along weft does not bend its diagonal hinges.
     assert!(report.stage(Component::BendDiagonal).is_none());
     assert!(report.curves().get(Component::BendDiagonal).is_none());
     assert!(report.stage(Component::BendWarp).is_none() && report.stage(Component::BendWeft).is_some());

@@ -1,4 +1,4 @@
-//! Laws that are no spline, measured in uniform stretch.
+//! Stress laws that are not splines, measured in uniform stretch.
 //!
 //! ```text
 //!   ┌───────────┐
@@ -6,10 +6,10 @@
 //!   └───────────┘
 //! ```
 //!
-//! Five control points meet 900ε + 1.6e5ε³ (to 6 %) and 8(e^{10ε} − 1) (to 25 %) within 0.7 %, 1.33(e^{60ε} − 1) (to 6 %)
-//! within 2 %, as relative L2 of the stress over the visited range; with 3 mN of noise within 1.5, 1.5 and 3 %.
-//! A law whose stiffness falls and rises again, so that a line is no better than a constant, gets its points.
-//! For a truth that the curve can represent, the 95 % band holds it for 90–99 % of rows and seeds.
+//! Five control points fit 900ε + 1.6e5ε³ (to 6 %) and 8(e^{10ε} − 1) (to 25 %) within 0.7 %, 1.33(e^{60ε} − 1) (to 6
+//! %) within 2 %, as relative L2 of the stress over the visited range; with 3 mN of noise within 1.5, 1.5 and 3 %. A
+//! law whose stiffness falls and rises again, so that a line fits no better than a constant, still gets its control
+//! points. For a truth that the curve can represent, the 95 % band contains it for 90–99 % of rows and seeds.
 
 use cloth_data::frame::MeasurementSet;
 use cloth_fit::stage::report::StageReport;
@@ -54,7 +54,7 @@ fn five_points_meet_laws_that_are_no_spline() {
                 println!("{name:18} {model:15} noise {:5}: {:.3} %", seed.is_some(), 100.0 * error);
                 assert!(report.converged && report.curve.curve.len() == 5);
                 assert!(error <= allowed, "{name} {model}: {error}");
-                // What five points cannot do shows as misfit above the noise, and the band holds it.
+                // The approximation error of five points appears as misfit above the noise, and the band contains it.
                 if seed.is_some() && report.scatter.misfit > 0.0 {
                     let held = coverage(&report.curve.samples, &law);
                     println!(
@@ -84,7 +84,7 @@ fn bars_of_any_depth_leave_the_cloth_between_them() {
 #[test]
 fn a_law_that_a_line_does_not_improve_gets_its_points() {
     let largest = 0.6;
-    // The polynomial is orthogonal to e and e², the stresses of a constant and of a line.
+    // The polynomial is orthogonal to e and e², the stresses of a constant and of a linear stiffness.
     let law = |strain: f64| {
         let e = strain / largest;
         40.0 * (e + (0.4 + (e - 4.0 / 3.0) * e) * e)

@@ -1,4 +1,4 @@
-//! A sequence that contradicts itself costs the curves that it alone shows, and no other.
+//! A sequence that contradicts itself removes only the curves that no other sequence determines.
 
 use cloth_data::error::Error;
 use cloth_data::frame::MeasurementSet;
@@ -12,7 +12,7 @@ use std::path::Path;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures");
 
-/// Bending alone, with the membrane known.
+/// Fits bending alone, with known membrane curves.
 fn bent(set: &MeasurementSet) -> Result<FitReport, Error> {
     let fabric = KnownFabric::read(&Path::new(FIXTURES).join("fabrics/cotton-denim.toml")).unwrap();
     let known = Knowledge::exact(fabric.curves().unwrap()).without(&[

@@ -1,8 +1,8 @@
-//! How often the 95 % bands hold the truth, where the truth is one that the fit can represent: simulated on the fit's own
-//! mesh, under curves with as many control points.
+//! Measures how often the 95 % bands contain the truth, for a truth that the fit can represent: simulated on the mesh
+//! of the fit, with curves of as many control points.
 //!
 //! ```text
-//! truth ──▶ the fit's own simulation ──▶ + 3 mN, 0.075 mm (seed) ──▶ fit ──▶ share of the rows whose band holds the truth
+//! truth ──▶ simulation of the fit ──▶ + 3 mN, 0.075 mm (seed) ──▶ fit ──▶ share of rows whose band contains the truth
 //! ```
 //!
 //! | stage | test | truth | carried forward |
@@ -11,10 +11,10 @@
 //! | shear | picture frame | 5 points | – |
 //! | shear | bias strip, 100 × 50 mm, to 12 % | constant | both stretches, from strips with 30 mN |
 //! | bending | 100 mm square, overhangs of 53 to 87 mm, held lines as noisy as the rest | constant, 2 points | – |
-//! | bending | the same three times: along weft, warp and the bias | constants 1 : 0.4 : 0.6 | the other two, in two passes |
+//! | bending | the same along weft, warp and the bias | constants 1 : 0.4 : 0.6 | the other two, in two passes |
 //!
-//! Averaged over 201 rows and 100 seeds the share is 90–99 %; 20 seeds on fewer nodes are within 85–100 %. What earlier
-//! stages do not know matters: left out, the band of the bias strip holds the truth in 12–15 %.
+//! Averaged over 201 rows and 100 seeds the share is 90–99 %; with 20 seeds on fewer nodes it is 85–100 %. The
+//! uncertainty of earlier stages matters: without it the band of the bias strip contains the truth in 12–15 %.
 
 use cloth_data::frame::{Kind, Sequence};
 use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
@@ -32,7 +32,7 @@ use fit_cloth_tests::{coverage, weightless};
 
 const FORCE_NOISE: f64 = 3e-3;
 
-/// So many seeds, and the nodes a side.
+/// Number of seeds and nodes per side.
 #[derive(Clone, Copy)]
 struct Size {
     seeds: u64,
@@ -69,7 +69,7 @@ fn membrane() -> Curves {
     pairs.map(|(component, stiffness)| constant(component, stiffness)).into_iter().collect()
 }
 
-/// Share of the rows of a stage's curve whose band holds the truth.
+/// Share of the rows of a stage's curve whose band contains the truth.
 fn share(stage: &StageReport, truth: &Curves) -> f64 {
     let component = stage.components[0];
     let scale = if component.is_bending() { HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
@@ -128,7 +128,7 @@ fn shear_after_stretch(size: Size) {
     let settings = Settings { nodes, variant: Variant::Linear, ..Settings::default() };
     let exact = simulated(&nominal, &truth, &settings);
     let force = |kind| if kind == Kind::StretchBias { FORCE_NOISE } else { 10.0 * FORCE_NOISE };
-    // With what the stretch stages do not know carried forward, and without.
+    // With the uncertainty of the stretch stages carried forward, and without.
     let held = |carried: bool| {
         size.mean(|seed| {
             let set = with_noise(&exact, seed, POSITION_NOISE, force);
@@ -159,7 +159,7 @@ fn bands_of_shear_carry_what_stretch_does_not_know_in_full() {
 
 const DENSITY: f64 = 0.2;
 
-/// A square pushed over an edge, its shapes seen on the simulation's own nodes.
+/// A square pushed over an edge, with shapes observed at the nodes of the simulation.
 fn overhanging(kind: Kind, nodes: usize) -> Sequence {
     let rigidity = DENSITY * GRAVITY * 0.085f64.powi(3) / 30.0;
     let cells = nodes - 1;

@@ -1,4 +1,4 @@
-//! The droop of a sheet hung from two corners: springs against continua.
+//! Droop of a sheet hung from two corners: springs compared with continuum models.
 //!
 //! ```text
 //!   o─────────o    source  Strohkorb 2019, figures 1 and 4: springs droop, a continuum hardly does
@@ -7,8 +7,8 @@
 //!      droop       passes  within 7 % of each other; a sheet twenty times stiffer droops a fifth as much at most
 //! ```
 //!
-//! In small shear γ both diagonal springs of a cell stretch by γ/2, each standing for half of the cloth: their energy is
-//! k γ²/8 an area, that of a continuum G γ²/2. So k = 4G.
+//! At a small shear γ both diagonal springs of a cell stretch by γ/2, and each represents half of the cloth: their
+//! energy per area is k γ²/8, that of a continuum G γ²/2. Hence k = 4G.
 
 use cloth_fit::material::Material;
 use cloth_scene::scene::Scene;
@@ -17,7 +17,7 @@ use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Model};
 use std::path::Path;
 
-/// Droop as a share of the sheet's height.
+/// Droop relative to the height of the sheet.
 fn droop(scene: &Scene, model: Model, stretch: f64, shear: f64) -> f64 {
     let compression = Compression::ZeroStrain;
     let curve = |(component, stiffness): (Component, f64)| {
@@ -49,7 +49,7 @@ fn springs_droop_as_continua_do_where_they_are_as_stiff() {
         ];
         println!("{stretch} N/m: {found:.4?}");
         assert!(found.iter().all(|droop| (droop / found[0] - 1.0).abs() < 0.07), "{found:?}");
-        // Diagonals of the continuum's shear stiffness are too soft.
+        // Diagonals with the shear stiffness of the continuum are too soft.
         assert!(droop(&scene, Model::Springs, stretch, shear) > 1.3 * found[0]);
         found
     });

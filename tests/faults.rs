@@ -1,13 +1,14 @@
-//! Faults in every field of the fixtures' files: none may panic, and what is green all the same must be right.
+//! Injects faults into every field of the fixtures' files: no run may panic, and a green result must be right.
 //!
 //! ```text
 //! part of a fixture ──▶ one or two faults ──▶ written ──▶ read ──▶ fitted ──▶ refused │ not green │ green and right
-//!        └──▶ fitted as it is ──────────────────────────────────────────────────────────────── compared ──┘
+//!        └──▶ fitted unchanged ──────────────────────────────────────────────────────────────── compared ─┘
 //! ```
 //!
-//! Right: within the sum of both bands in nine tenths of what both have seen, and that is half of the range at least. Both
-//! fits have the same coarse grid, which neither band knows. Where no measurement of a set says anything of a field, as of
-//! the calibration of its one load cell, nothing can be found: [`unseeable`] lists these.
+//! Right: the curves agree within the sum of both bands over nine tenths of the range covered by both, which must be
+//! at least half of the whole range. Both fits use the same coarse grid, whose error neither band includes. If no
+//! other measurement of a set constrains a field, such as the calibration of its only load cell, the fault cannot be
+//! found; [`unseeable`] lists these cases.
 //!
 //! ```sh
 //! cargo test -p fit-cloth-tests --test main -- faults::full --ignored --nocapture
@@ -30,7 +31,7 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// What a set is cut down to, the stages that fit it, and nodes along a side.
+/// Parts of the sets, the stages that fit them, and nodes per side.
 const PARTS: [(&[Kind], &[Stage], usize); 5] = [
     (&[Kind::StretchWeft], &[Stage::Stretch], 7),
     (&[Kind::StretchWarp], &[Stage::Stretch], 7),
@@ -43,7 +44,7 @@ const PARTS: [(&[Kind], &[Stage], usize); 5] = [
     ),
 ];
 
-/// A set cut down, its stages, and its fit.
+/// A reduced set, its stages, and its fit.
 struct Clean {
     name: String,
     set: MeasurementSet,
@@ -57,7 +58,7 @@ fn fitted(set: &MeasurementSet, stages: &[Stage], nodes: usize) -> cloth_data::e
     fit(set, stages, &Knowledge::default(), &settings, &mut Watch::default())
 }
 
-/// The parts of the fixtures.
+/// The reduced fixtures.
 fn clean_sets() -> Vec<Clean> {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");
     let mut clean = Vec::new();
@@ -66,7 +67,7 @@ fn clean_sets() -> Vec<Clean> {
         for (kinds, stages, nodes) in PARTS {
             let mut set = whole.clone();
             set.sequences.retain(|sequence| kinds.contains(&sequence.kind));
-            // An edge at the origin would be the same zeroed, scaled and turned.
+            // An edge at the origin would not change when zeroed, scaled or turned.
             for sequence in &mut set.sequences {
                 if let Some(table) = &mut sequence.table {
                     let away = Vector3::new(0.03, -0.02, 0.05);
@@ -82,14 +83,14 @@ fn clean_sets() -> Vec<Clean> {
     clean
 }
 
-/// How a run ended.
+/// Result of a run.
 #[derive(Debug, Clone, PartialEq)]
 enum End {
-    /// With an error, that names the fault one hopes.
+    /// An error, expected to name the fault.
     Refused,
-    /// No curve of it was green.
+    /// No green curve.
     NotGreen,
-    /// All its green curves were right.
+    /// All green curves were right.
     Right,
     /// A green curve was wrong by this share of its largest stress.
     Wrong(Component, f64),
@@ -118,7 +119,7 @@ fn end(clean: &Clean, set: &MeasurementSet) -> End {
     end
 }
 
-/// How far a curve is off another, over its largest stress; `None` if it is right.
+/// Distance of a curve from the reference, relative to its largest stress; `None` if it is right.
 fn off(found: &[Sample], right: &[Sample]) -> Option<f64> {
     let banded = found.iter().filter_map(|sample| Some((sample, sample.band?)));
     let (mut all, mut both, mut outside, mut most) = (0, 0, 0, 0.0f64);
@@ -136,7 +137,7 @@ fn off(found: &[Sample], right: &[Sample]) -> Option<f64> {
     if 2 * both < all { Some(f64::INFINITY) } else { (10 * outside > both).then_some(most) }
 }
 
-/// Stress and half band of a curve between two of its rows.
+/// Stress and half band of a curve, interpolated between rows.
 fn at(samples: &[Sample], strain: f64) -> Option<(f64, f64)> {
     let next = samples.partition_point(|sample| sample.strain < strain).max(1);
     let (a, b) = (samples.get(next - 1)?, samples.get(next)?);
@@ -145,7 +146,7 @@ fn at(samples: &[Sample], strain: f64) -> Option<(f64, f64)> {
     Some((a.stress + share * (b.stress - a.stress), 0.5 * (high - low)))
 }
 
-/// Ends of the runs of one kind of fault.
+/// Results of the runs with one kind of fault.
 #[derive(Debug, Default)]
 struct Row {
     refused: usize,
@@ -154,18 +155,18 @@ struct Row {
     wrong: Vec<Wrong>,
 }
 
-/// A run with a green curve that was wrong.
+/// A run with a wrong green curve.
 #[derive(Debug)]
 struct Wrong {
-    /// By which share of the largest stress.
+    /// Error relative to the largest stress.
     off: f64,
-    /// What kept it from being seen, if that is known.
+    /// Known reason why it cannot be detected.
     why: Option<&'static str>,
-    /// The seed, and what it drew.
+    /// The seed and its faults.
     what: String,
 }
 
-/// Why nothing in a set contradicts a fault that put a curve so far off; `None` where something does.
+/// Reason why nothing in a set contradicts a fault that causes an error of this size; `None` if something does.
 fn unseeable(fault: &Fault, off: f64) -> Option<&'static str> {
     let small = |factor: f64| (0.9..1.1).contains(&factor);
     match (fault.field, fault.change, fault.frame) {
@@ -185,16 +186,16 @@ fn unseeable(fault: &Fault, off: f64) -> Option<&'static str> {
         (Field::Material, Change::Scale(factor), _) if (0.999..1.001).contains(&factor) => {
             Some("no length is known so well")
         }
-        // The frame is named and takes no part; the others' curve is off by what the grid does.
+        // The frame is reported and excluded; the remaining error of the curve comes from the grid.
         (Field::Positions, Change::ZeroAll, Some(_)) if off < 0.03 => Some("a frame less on a coarse grid"),
         _ => None,
     }
 }
 
-/// Runs of seeds, as a table.
+/// Runs a range of seeds and tabulates the results.
 ///
 /// # Panics
-/// With the run that panicked.
+/// If a run panics; the message names it.
 fn runs(seeds: std::ops::Range<u64>) -> BTreeMap<String, Row> {
     let clean = clean_sets();
     for Clean { name, report, .. } in &clean {
@@ -246,10 +247,10 @@ fn print(rows: &BTreeMap<String, Row>) {
     }
 }
 
-/// Runs these seeds; prints the table, and what was green and wrong.
+/// Runs a range of seeds and prints the table and the wrong green curves.
 ///
 /// # Panics
-/// If a run panicked, or a green curve was wrong that need not have been.
+/// If a run panicked, or a green curve was wrong for no known reason.
 fn assert_sound(seeds: std::ops::Range<u64>) {
     let rows = runs(seeds);
     print(&rows);

@@ -1,5 +1,5 @@
-//! What a measurement is told in must not matter: the same test in other axes, another order, other units, another image
-//! gives the same curves, and the same bands.
+//! Fits do not depend on the representation of a measurement: other axes, order or units, or a mirror image, give the
+//! same curves and bands.
 //!
 //! ```text
 //!  fixture ──▶ fit ──▶ curves, bands
@@ -24,7 +24,7 @@ use rand::{SeedableRng, rngs::StdRng};
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The fixtures, and the curves that they give.
+/// The fixtures and their fits.
 static MEASURED: LazyLock<Vec<(MeasurementSet, FitReport)>> = LazyLock::new(|| {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");
     let measured = |name| {
@@ -41,12 +41,12 @@ fn fitted(set: &MeasurementSet) -> FitReport {
     fit(set, &Stage::ALL, &Knowledge::default(), &settings, &mut Watch::default()).unwrap()
 }
 
-/// Where a component's curve is found again.
+/// Transformed curve of a component.
 struct Image {
     component: Component,
-    /// Strain, or curvature, as a multiple.
+    /// Factor of the strain or curvature.
     strain: f64,
-    /// Stress, or moment, as a multiple.
+    /// Factor of the stress or moment.
     stress: f64,
 }
 
@@ -64,7 +64,7 @@ fn exchanged(component: Component) -> Image {
     })
 }
 
-/// Fits every fixture changed; the curves and bands must be the images of those of the fixture as it is.
+/// Fits every fixture after a change; curves and bands must be the images of the original ones.
 fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&mut MeasurementSet)) {
     for (set, before) in &*MEASURED {
         let what = format!("{what}, {}", set.fabric.name);
@@ -85,8 +85,8 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
     }
 }
 
-/// How far two curves are apart, over their reach or the largest stress, and by which share their bands differ where they
-/// are widest.
+/// Distance of two curves relative to their reach or the largest stress, and the relative difference of their bands
+/// where these are widest.
 fn apart(before: &[Sample], after: &[Sample], [strain, stress, band]: [f64; 3]) -> (f64, f64) {
     let largest = before.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
     let widest = before.iter().map(half).fold(0.0, f64::max);
@@ -102,12 +102,12 @@ fn apart(before: &[Sample], after: &[Sample], [strain, stress, band]: [f64; 3]) 
     (curve, bands)
 }
 
-/// Half of the width of a band.
+/// Half width of a band.
 fn half(sample: &Sample) -> f64 {
     sample.band.map_or(0.0, |[low, high]| 0.5 * (high - low))
 }
 
-/// Every vector of a sequence: what is a place, and what is a direction.
+/// Visits every vector of a sequence, positions and directions separately.
 fn each_vector(sequence: &mut Sequence, place: &dyn Fn(&mut Vector3<f64>), turn: &dyn Fn(&mut Vector3<f64>)) {
     turn(&mut sequence.gravity);
     sequence.force_direction.iter_mut().for_each(turn);
@@ -129,7 +129,7 @@ fn each_vector(sequence: &mut Sequence, place: &dyn Fn(&mut Vector3<f64>), turn:
     }
 }
 
-/// Everything moved as one.
+/// Moves everything rigidly.
 fn move_all(set: &mut MeasurementSet, motion: &Isometry3<f64>) {
     for sequence in &mut set.sequences {
         each_vector(
@@ -143,7 +143,7 @@ fn move_all(set: &mut MeasurementSet, motion: &Isometry3<f64>) {
     }
 }
 
-/// Only the specimens at rest moved.
+/// Moves only the specimens at rest.
 fn move_rest(set: &mut MeasurementSet, motion: &Isometry3<f64>) {
     for sequence in &mut set.sequences {
         for place in &mut sequence.mesh.positions {
@@ -155,14 +155,14 @@ fn move_rest(set: &mut MeasurementSet, motion: &Isometry3<f64>) {
     }
 }
 
-/// Material coordinates turned or mirrored.
+/// Rotates or mirrors the material coordinates.
 fn turn_yarns(set: &mut MeasurementSet, turn: impl Fn(Vector2<f64>) -> Vector2<f64>) {
     for mesh in set.sequences.iter_mut().map(|sequence| &mut sequence.mesh) {
         mesh.material.iter_mut().for_each(|material| *material = turn(*material));
     }
 }
 
-/// Faces wound the other way.
+/// Reverses the winding of the faces.
 fn rewind(set: &mut MeasurementSet) {
     for triangle in set.sequences.iter_mut().flat_map(|sequence| &mut sequence.mesh.triangles) {
         triangle.swap(1, 2);
@@ -182,7 +182,7 @@ fn exchange_kinds(set: &mut MeasurementSet) {
     }
 }
 
-/// The image in a mirror through the origin, across `normal`.
+/// Mirrors a set at the plane through the origin with this `normal`.
 fn mirror(set: &mut MeasurementSet, normal: Vector3<f64>) {
     let image = Matrix3::identity() - normal * normal.transpose() * 2.0;
     for sequence in &mut set.sequences {
@@ -225,7 +225,7 @@ fn a_rest_mesh_may_lie_in_any_plane() {
 
 #[test]
 fn a_mirror_image_gives_the_same_curves_though_it_shears_the_other_way() {
-    // In the plane, where shear changes its sign, and across it, where nothing does but the side that is seen.
+    // In the plane, where shear changes sign, and out of the plane, where only the visible side changes.
     same_curves("mirrored in y", itself, |set| {
         mirror(set, Vector3::y());
         turn_yarns(set, |m| Vector2::new(m.x, -m.y));
@@ -280,7 +280,7 @@ fn the_order_of_vertices_and_frames_does_not_matter() {
     });
 }
 
-/// Noise averages out, misfit does not, and more measurements may pay for another control point.
+/// Noise averages out and misfit does not; additional measurements may justify another control point.
 #[test]
 fn frames_that_stand_twice_make_bands_narrower_by_root_two_but_for_misfit() {
     for (set, before) in &*MEASURED {
@@ -314,7 +314,7 @@ fn frames_that_stand_twice_make_bands_narrower_by_root_two_but_for_misfit() {
 
 #[test]
 fn units_of_length_and_force_do_not_matter() {
-    // A metre and a newton are as long and as much as one likes: what is said in them follows.
+    // The units of length and force are arbitrary: all derived values scale with them.
     let (length, force) = (1.25, 1.5);
     let stress = force / length;
     let image = |component: Component| match component.is_bending() {
@@ -341,8 +341,8 @@ fn units_of_length_and_force_do_not_matter() {
     });
 }
 
-/// A strip of 50 N/m pulled to a tenth, forces exact and no shape seen: where its solves start is all that tells it from a
-/// crumpled one.
+/// A strip of 50 N/m pulled to a tenth, with exact forces and no shapes: only the start of its solves distinguishes
+/// it from a crumpled one.
 fn strip() -> MeasurementSet {
     UniformStretch { model: Model::Stvk, law: &|e| 50.0 * e, largest: 0.1, grip: 0.0, frames: 5, noise: None }
         .measure()
@@ -370,7 +370,7 @@ fn a_strip_that_was_carried_around_without_being_seen_gives_its_curve() {
         move_rest(&mut set, &Isometry3::new(Vector3::new(0.2, 0.4, 0.0), turn));
         gives_fifty(&format!("rest turned by {turn:?}"), &set);
     }
-    // Turned around from frame to frame, in its plane and out of it.
+    // Rotated from frame to frame, in its plane and out of it.
     for axis in [Vector3::z_axis(), Vector3::x_axis()] {
         let mut set = strip();
         for (index, frame) in set.sequences[0].frames.iter_mut().enumerate() {

@@ -1,11 +1,12 @@
-//! A few measurements that are nonsense: with `robust` they hardly move the curve.
+//! A few invalid measurements: with `robust` they hardly move the curve.
 //!
 //! ```text
 //!  stretch  8(e^{10ε} − 1), 40 frames:  two clip forces with a flipped sign, two three times too large
 //!  bending  elastica at Γ = 30:         one vertex in a hundred seen 10 mm too high, on the outer part of the sheet
 //! ```
 //!
-//! Relative L2 error of the stress: with `robust` at 3 below 1.5 % for forces, below 1 % for vertices; without 8 and 2 %.
+//! Relative L2 error of the stress: with `robust` at 3 below 1.5 % for forces and below 1 % for vertices; without it
+//! 8 and 2 %.
 
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::inspection::inspect;
@@ -49,7 +50,7 @@ fn wrong_forces_hardly_move_the_curve() {
             let settings = Settings { robust, nodes: Some([9, 9]), ..Settings::default() };
             let stage = fit_one(&set, Stage::Stretch, Component::StretchWeft, &settings);
             let bent = stage.interventions.residuals_bent;
-            // The four, and some of 160 that five control points do not meet to 9 mN.
+            // The four, and some of 160 that five control points do not fit to 9 mN.
             assert!(if robust.is_some() { bent >= 4 } else { bent == 0 }, "{bent} residuals count less");
             stress_error(&stage.curve.samples, &law)
         });
@@ -63,7 +64,7 @@ fn friction_of_the_cords_does_not_keep_a_robust_fit_from_its_minimum() {
     let set = read_set(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/cotton-denim")).unwrap();
     let settings = Settings { robust: Some(3.0), nodes: Some([13, 13]), ..Settings::default() };
     for component in [Component::StretchWeft, Component::StretchWarp] {
-        // Loading and unloading lie apart by twenty times the noise: no residual is small.
+        // Loading and unloading differ by twenty times the noise: no residual is small.
         let stage = fit_one(&set, Stage::Stretch, component, &settings);
         assert!(stage.interventions.residuals_bent > 15, "{}", stage.interventions.residuals_bent);
     }
@@ -103,7 +104,8 @@ fn vertices_seen_elsewhere_hardly_move_the_curve() {
         let (undisturbed, none) = error(&clean, None);
         let [(ruled, strays), (robust, _)] = ROBUST.map(|robust| error(&set, robust));
         println!("{none} vertices left out undisturbed, {strays} disturbed");
-        // What is far from its neighbours is not observed from the start; where they are far apart, it is found later.
+        // Points far from their neighbours are unobserved from the start; if neighbours are far apart, they are found
+        // later.
         let told = !inspect(&set).notices.is_empty();
         assert!(none == 0 && (told || strays > 0), "{none} {strays}");
         println!(

@@ -1,14 +1,14 @@
-//! The published method against ours, one difference at a time, on a sheet whose rigidity is known.
+//! The published method compared with ours, one difference at a time, on a sheet of known rigidity.
 //!
 //! ```text
 //!  ▒▒▒▒▒▒▒▒───╮        100 mm square on 25×25 nodes pushed off a table: a heavy elastica, Γ = 10, without noise
 //!         ▒    ╲
-//!  table  ▒     │      each row: our method but for one setting
+//!  table  ▒     │      each row: our method with one setting changed
 //! ```
 //!
-//! What the table holds decides: held where it lies on the table only, the sheet comes out too stiff by more than a quarter.
-//! Without that every other difference leaves the rigidity within 5 %, but for a sheet that does not bend as a cylinder: a
-//! fifth too stiff.
+//! The hold on the table is decisive: held only on the table, the sheet comes out more than a quarter too stiff. Any
+//! other single difference leaves the rigidity within 5 %, except a sheet that does not bend as a cylinder: a fifth
+//! too stiff.
 
 use cloth_data::frame::Kind;
 use cloth_fit::equilibria::SolveStart;
@@ -24,7 +24,7 @@ use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, between_rows};
 
 const DENSITY: f64 = 0.2;
 
-/// The found rigidity as a multiple of the true one, and the factorisations that it took.
+/// The fitted rigidity relative to the true one, and the number of factorisations.
 fn found(name: &str, settings: Settings) -> f64 {
     let truth = DENSITY * GRAVITY * 0.085f64.powi(3) / 10.0;
     let moment = |curvature: f64| truth * curvature;

@@ -1,4 +1,4 @@
-//! Known curves, measured by the virtual rig, fitted, compared.
+//! Known curves are measured by the virtual rig, fitted and compared.
 //!
 //! ```text
 //! rig: StVK on 31×31 nodes              fit: 13×13 nodes
@@ -7,8 +7,8 @@
 //!   └──────────────┘
 //! ```
 //!
-//! The stress comes back within 1 % without noise and within 2 % with it (relative L2 over the visited range), whatever
-//! else the sequence brings: weight, noise in the clips' poses, holes in the shapes, hysteresis.
+//! The fit recovers the stress within 1 % without noise and within 2 % with it (relative L2 over the visited range),
+//! with weight, noise in the clip poses, missing points or hysteresis.
 
 use cloth_data::frame::{Kind, MeasurementSet, Phase};
 use cloth_data::rig::{KnownFabric, Rig};
@@ -67,7 +67,8 @@ fn denim_comes_back() {
     }
 }
 
-/// Another way to the same minimum, but for the last hundredth of the residual; without noise that is still some way off.
+/// Another path to the same minimum, up to the last hundredth of the residual; without noise that is still some
+/// distance.
 #[test]
 fn denim_comes_back_as_published() {
     let set = measure(&rig());
@@ -111,7 +112,7 @@ fn weight_across_the_sheet_makes_it_sag_and_is_borne() {
     let mut set = measure(&Rig { noise: false, ..rig() });
     for sequence in &mut set.sequences {
         sequence.gravity = Vector3::new(0.0, 0.0, -9.81);
-        // What cords must now carry: half of the sheet each, and the clip.
+        // Cord forces with weight: half of the sheet each, and the clip.
         let share = 0.5 * set.fabric.areal_density_kg_m2 * 0.01;
         for cord in sequence.frames.iter_mut().flat_map(|frame| &mut frame.cords) {
             cord.force.z += 9.81 * (share + sequence.clips[cord.clip].mass_kg);
@@ -124,7 +125,7 @@ fn weight_across_the_sheet_makes_it_sag_and_is_borne() {
         report.sequences[0].force_rms.unwrap()
     );
     assert!(report.converged && !report.sequences[0].planar);
-    // The truth did not sag: at the lowest forces the sheet now does, by a few per cent of the force.
+    // The exact sheet did not sag; the fitted one does at the lowest forces, by a few per cent of the force.
     assert!(
         error(&report) < 0.02
             && report.sequences[0].force_rms.unwrap() < 0.01 * report.sequences[0].force_largest
@@ -143,7 +144,7 @@ fn a_specimen_anywhere_in_space_fits_alike() {
         sequence.mesh.positions.iter_mut().for_each(|p| *p = place(p));
         for frame in &mut sequence.frames {
             for pose in &mut frame.poses {
-                // x' = R (x_rest' − s) turned and moved: conjugation by the motion.
+                // Poses map moved rest points to moved points: conjugation by the motion.
                 let motion = nalgebra::Isometry3::from_parts(shift.into(), rotation.into());
                 *pose = motion * *pose * motion.inverse();
             }
@@ -196,7 +197,7 @@ fn what_the_frames_cannot_tell_is_said() {
         sequence.frames = vec![frame.clone(), frame.clone(), frame];
     }
     let report = fit_weft(&set, Model::Stvk);
-    // One strain tells one number: a constant stiffness.
+    // A single strain determines one number: a constant stiffness.
     assert_eq!((report.curve.curve.len(), report.curve.rank), (1, 1));
     assert!(report.sequences[0].force_rms.unwrap() < 1e-6 * report.sequences[0].force_largest);
 }
@@ -224,7 +225,7 @@ fn a_single_flipped_force_is_pointed_at() {
 #[test]
 fn a_pull_along_the_other_yarns_is_named() {
     let mut set = measure(&rig());
-    // The warp test, labelled as one of weft.
+    // The warp test, labelled as a weft test.
     set.sequences.retain(|sequence| sequence.name == "stretch-warp");
     set.sequences[0].kind = Kind::StretchWeft;
     let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
@@ -278,7 +279,7 @@ fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
 
 #[test]
 fn published_constraints_allow_what_the_stable_ones_forbid() {
-    // A law that softens: its tangent falls below zero.
+    // A softening law: its tangent falls below zero.
     let law = |strain: f64| 1000.0 * strain * (-strain / 0.02f64).exp();
     let set = fit_cloth_tests::UniformStretch {
         model: Model::Stvk,

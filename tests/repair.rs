@@ -1,10 +1,10 @@
 //! Source: none; the defects are those of docs/model.md, "Check and repair".
 //!
-//! Goal: any curve that can be repaired is, once and for all.
+//! Goal: every repairable curve is repaired, and repair is idempotent.
 //!
-//! Parameters: 1000 random curves of two to eight control points, values over three decades, random strains. Every repair
-//! passes the check that found the defects, and a repair of it changes nothing, to the bit. Where the stress between the
-//! points is negative on the whole, no stiffness is nearest, and that is said.
+//! Parameters: 1000 random curves of two to eight control points, values over three decades, random strains. Every
+//! repaired curve passes the check that found the defects, and repairing it again changes nothing, to the bit. If the
+//! stress between the points is negative overall, no nearest stiffness exists, and an error says so.
 
 use cloth_fit::judge::repair::{Unrepairable, repair};
 use cloth_sim::curve::soundness::{Context, MEMBRANE_STIFFNESS, check};
@@ -25,7 +25,7 @@ fn a_thousand_random_curves_are_repaired_once_and_for_all() {
         let repaired = match repair(&given, &context) {
             Ok(repaired) => repaired,
             Err(Unrepairable::NoStiffness) => {
-                // Only where the spline between positive points is negative on the whole.
+                // Only where the spline between positive points is negative overall.
                 assert!(stresses(&given).sum::<f64>() < 0.0, "curve {seed}");
                 refused += 1;
                 continue;
@@ -45,7 +45,7 @@ fn a_thousand_random_curves_are_repaired_once_and_for_all() {
         "{sound} of 1000 were sound, {refused} cannot be repaired; the farthest repair moved the stress by {:.0} % (rms)",
         100.0 * largest
     );
-    // Two points that rise are sound; nearly all others are not.
+    // Two points that rise are sound; almost all other curves are not.
     assert!((20..200).contains(&sound), "{sound}");
     assert!(refused < 10 && largest < 1.0, "{refused} {largest}");
 }

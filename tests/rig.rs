@@ -1,4 +1,4 @@
-//! The virtual rig: its fabrics are what is known of them, its measurements what they claim to be.
+//! The virtual rig: its fabrics have their documented properties, and its measurements their declared accuracy.
 
 use cloth_data::frame::{Frame, Kind, MeasurementSet, Phase, Sequence};
 use cloth_data::rig::{KINDS, KnownFabric, Rig};
@@ -68,7 +68,7 @@ fn the_fabrics_are_what_is_known_of_them() {
     assert!(compliant(&satin) && compliant(&knit));
     let others = [&satin, &knit, &wool].map(shear);
     assert!(denim.curves.shear.stiffness_n_per_m.iter().all(|&k| k >= 10.0 * largest(&others)));
-    // Nearly linear: the knit's stiffness varies by a tenth.
+    // Nearly linear: the stiffness of the knit varies by a tenth.
     assert!(stretch(&knit)[0] < 1.15 * knit.curves.stretch_weft.stiffness_n_per_m[0]);
 }
 
@@ -87,7 +87,7 @@ fn every_fabric_can_be_measured_and_fitted() {
             let tangents = rows * DVector::from_row_slice(curve.stiffnesses());
             assert!(tangents.min() > 0.05 * curve.stiffnesses()[0], "{} {component}", fabric.name);
         }
-        // Weight against rigidity, Γ = ρgL³/D: below 1 nothing bends, beyond 100 all hangs down.
+        // Ratio of weight to rigidity, Γ = ρgL³/D: below 1 the sheet hardly bends, beyond 100 it hangs straight down.
         for (component, points) in fabric.curves.bending() {
             for overhang in fabric.overhang_m {
                 let weight = fabric.areal_density_kg_m2 * GRAVITY * overhang.powi(3) / points.rigidity_n_m[0];
@@ -97,7 +97,7 @@ fn every_fabric_can_be_measured_and_fitted() {
     }
 }
 
-/// Gaps in the reader would let a figure through that no test can be driven to.
+/// A gap in the checks would admit a value that no test can reach.
 #[test]
 fn a_figure_that_cannot_be_is_named_with_its_line() {
     let text = include_str!("../fixtures/fabrics/cotton-denim.toml");
@@ -159,21 +159,21 @@ fn a_picture_frame_stays_one() {
             assert!(apart.norm() < 1e-15);
         }
     }
-    // Sheared so that w_u·w_v is positive, the bar on the right is drawn up along itself.
+    // Sheared to positive w_u·w_v, the bar on the right moves up along itself.
     let frame = &sequence.frames[2];
     let [weft, warp] = [2, 0]
         .map(|clip: usize| frame.poses[clip].rotation)
         .map(|turn| (turn * Vector3::x(), turn * Vector3::y()));
     assert!((weft.0.dot(&warp.1) - denim().largest_shear_rad.sin()).abs() < 1e-12);
     let axial = frame.clip_force(1).unwrap().dot(&warp.1);
-    // Buckling takes some of it, the tension of the other yarns adds to it.
+    // Buckling reduces it; the tension of the other yarns adds to it.
     let curves = denim().curves().unwrap();
     let flat = curves.get(cloth_sim::material::Component::Shear).unwrap().stress(weft.0.dot(&warp.1)) * 0.1;
     println!("axial {axial:.3} N, {flat:.3} N in the flat");
     assert!(axial > 0.5 * flat && axial < 1.5 * flat);
 }
 
-/// A stiff sheet droops by ρgL⁴/8D, level across, however its cells are split.
+/// A stiff sheet droops by ρgL⁴/8D, level across, regardless of its diagonals.
 #[test]
 fn a_stiff_sheet_droops_like_a_beam() {
     for kind in [Kind::BendWeft, Kind::BendWarp, Kind::BendBias] {
@@ -193,7 +193,7 @@ fn a_stiff_sheet_droops_like_a_beam() {
 const STIFF_OVERHANG: [f64; 2] = [0.0625, 0.0725];
 const STIFF_RIGIDITY: f64 = 0.05;
 
-/// The bending test of a sheet so stiff that it hardly bends.
+/// Bending test of a sheet so stiff that it hardly bends.
 fn stiff(kind: Kind, diagonals: Diagonals) -> Sequence {
     let mut fabric = denim();
     let curves = &mut fabric.curves;
@@ -213,7 +213,7 @@ fn a_sequence_depends_on_the_seed_alone() {
     let among = noisy(&[Kind::StretchWarp, Kind::Shear, Kind::StretchWeft], 3);
     assert_eq!(among.sequences[1], alone.sequences[0]);
     assert_ne!(noisy(&[Kind::StretchWarp], 4).sequences[0], alone.sequences[0]);
-    // Bars that are hinged together meet, however they are seen.
+    // Bars hinged together meet, whatever the noise.
     let shear = &among.sequences[0];
     let corner = nalgebra::Point3::from(shear.mesh.positions[0]);
     assert!(
@@ -235,7 +235,7 @@ fn every_sequence_is_made_and_named() {
 fn hysteresis_is_seen_and_leaves_the_mean() {
     let plain = rig(&[Kind::StretchWeft]);
     let exact = forces(&measure(&plain).sequences[0]);
-    // Frames 1 and 3 are at the same place, once loading and once unloading; two clips each.
+    // Frames 1 and 3 have the same position, once loading and once unloading; two clips each.
     let middle = |rig: &Rig| {
         let forces = forces(&measure(rig).sequences[0]);
         [forces[0], forces[4]].map(|force| force.norm())

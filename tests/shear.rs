@@ -1,4 +1,4 @@
-//! Laws of shear that are no spline, measured in a picture frame.
+//! Shear laws that are not splines, measured in a picture frame.
 //!
 //! ```text
 //!      ╱────────╱ ─▶     100 mm square, four bars; stress × side along each bar, seen flat; stretch not measured
@@ -6,9 +6,9 @@
 //! ◀─╱────────╱
 //! ```
 //!
-//! Five control points meet 60ε + 400ε³ up to sin γ = 0.5 within 0.7 % without noise, within 1.5 % with 3 mN, as relative L2
-//! of the stress over the visited range, for both triangle models. Where nobody saw the sheet it may have buckled: the band
-//! then holds this truth too, in 90 % of the range at least, and the verdict names bending.
+//! Five control points fit 60ε + 400ε³ up to sin γ = 0.5 within 0.7 % without noise and within 1.5 % with 3 mN, as
+//! relative L2 of the stress over the visited range, for both triangle models. An unobserved sheet may have buckled:
+//! the band then also contains this truth, in at least 90 % of the range, and the verdict names bending.
 
 use cloth_data::io::read_set;
 use cloth_data::rig::KnownFabric;
@@ -62,7 +62,7 @@ fn a_sheet_that_nobody_saw_may_have_buckled_or_not() {
     assert!(verdict.grade > Grade::Green && verdict.reasons.iter().any(|reason| reason.contains("bending")));
 }
 
-/// Without tests of bending, with the shapes of the sheared sheet and without.
+/// Without bending tests, with the shapes of the sheared sheet and without.
 #[test]
 fn shear_alone_holds_the_truth_of_a_sheet_that_buckles_or_says_what_it_lacks() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");

@@ -1,11 +1,11 @@
-//! Where a fit starts does not matter: twenty starts over three decades end in one optimum, for every stage.
+//! A fit does not depend on its start: twenty starts over three decades reach the same optimum, for every stage.
 //!
 //! ```text
 //!  start × 10^−1.5 … 10^1.5, log-uniform ──▶ fit ──▶ control values alike within 0.1 %
 //! ```
 //!
-//! Stretch: 8(e^{10ε} − 1) to 25 % in uniform stretch, 3 mN. Shear: 60ε + 400ε³ in a picture frame, 3 mN. Bending: the heavy
-//! elastica at Γ = 30, along weft and on the bias, 0.075 mm.
+//! Stretch: 8(e^{10ε} − 1) to 25 % in uniform stretch, 3 mN. Shear: 60ε + 400ε³ in a picture frame, 3 mN. Bending:
+//! the heavy elastica at Γ = 30, along weft and on the bias, 0.075 mm.
 
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_fit::stage::knowledge::Knowledge;

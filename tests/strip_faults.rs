@@ -1,6 +1,8 @@
-//! Strips as machines record them, with a fault each: as they stand a curve is wrong, and what the notice offers mends it.
+//! Strips with a typical recording fault each: uncorrected, the curve is wrong; the correction named in the notice
+//! fixes it.
 //!
-//! Specimen: 0.2 × 0.05 m, 2000 ε + 20000 ε² N/m of engineering strain, noise of 5 mN, pulled by 20 mm in steps of 0.2 mm.
+//! Specimen: 0.2 × 0.05 m, 2000 ε + 20000 ε² N/m of engineering strain, noise of 5 mN, pulled by 20 mm in steps of
+//! 0.2 mm.
 //! Tolerance: stiffness at zero within 3 %, stress at 0.0495 within 1 % of 148.0 N/m.
 
 use cloth_data::notice::Severity;
@@ -19,12 +21,12 @@ fn stress(strain: f64) -> f64 {
     2000.0 * strain + 20000.0 * strain * strain
 }
 
-/// Force of a strip of some free length, N.
+/// Force of a strip with the given free length, N.
 fn force(separation: f64, length: f64) -> f64 {
     0.05 * stress((separation / length - 1.0).max(0.0))
 }
 
-/// Extension and force, before the noise.
+/// Extension and force, without noise.
 fn pulled(row: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     (0..=100).map(|step| row(GAUGE + 2e-4 * f64::from(step))).collect()
 }
@@ -56,7 +58,7 @@ fn fitted(strip: &Strip, robust: Option<f64>) -> FitReport {
     fit(&set, &[Stage::Stretch], &Knowledge::default(), &settings, &mut Watch::default()).unwrap()
 }
 
-/// The truth within the tolerance.
+/// True if the fit is within the tolerance.
 fn is_right(report: &FitReport) -> bool {
     let curve = report.curves().get(Component::StretchWeft).unwrap();
     let [start, stress] = [curve.stiffnesses()[0] / 2000.0, curve.response(0.0495).stress / stress(0.0495)];
@@ -135,7 +137,7 @@ fn one_bad_reading_is_named_and_a_robust_fit_gives_the_truth() {
     assert!(is_right(&report));
 }
 
-/// The law above, and one that no line of stiffness meets: from 6 % on the data see no rest.
+/// The law above, and one that no linear stiffness fits: starting at 6 %, the data contain no rest state.
 #[test]
 fn a_range_that_starts_under_load_is_seen_from_there_and_has_as_many_points_as_it_needs() {
     let loaded = |start: f64, law: fn(f64) -> f64| -> Vec<[f64; 2]> {
@@ -150,7 +152,7 @@ fn a_range_that_starts_under_load_is_seen_from_there_and_has_as_many_points_as_i
         curve.seen
     );
     assert!(curve.samples.iter().all(|sample| sample.band.is_none() == (sample.strain < curve.seen[0])));
-    // Its stiffness bends between 6 and 10 %.
+    // Its stiffness has a kink between 6 and 10 %.
     let bent =
         fitted(&import(&loaded(0.06, |e| 40.0 * e + 6e4 * (e - 0.07).max(0.0).powi(2)), |test| test), None);
     let stage = &bent.stages[0];

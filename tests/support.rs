@@ -1,4 +1,4 @@
-//! What several tests share.
+//! Shared test code.
 
 #[path = "support/cantilever.rs"]
 pub mod cantilever;
@@ -26,17 +26,17 @@ use std::path::PathBuf;
 
 /// Uniform stretch of a 100 mm square along weft, without shapes: four vertices, two bars, and forces of a known law.
 pub struct UniformStretch<'a> {
-    /// The model whose strain the law is over.
+    /// Model of the strain of the law.
     pub model: Model,
     /// Stress over strain, N/m.
     pub law: &'a dyn Fn(f64) -> f64,
     /// Largest strain.
     pub largest: f64,
-    /// How deep the bars grip, a multiple of 10 mm; the cloth between them is stretched.
+    /// Depth of the bars, as a multiple of 10 mm; the cloth between them is stretched.
     pub grip: f64,
-    /// Frames.
+    /// Number of frames.
     pub frames: usize,
-    /// Noise to add to each force component, N; also told to the fit.
+    /// Noise to add to each force component, N; also declared to the fit.
     pub noise: Option<(f64, &'a mut dyn FnMut() -> f64)>,
 }
 
@@ -93,7 +93,7 @@ impl UniformStretch<'_> {
     }
 }
 
-/// A set of sequences without gravity, for which mass and the sample's size do not matter.
+/// A set of sequences without gravity, for which mass and sample size are irrelevant.
 pub fn weightless(name: &str, sequences: Vec<Sequence>) -> MeasurementSet {
     let fabric = Fabric {
         name: name.into(),
@@ -117,21 +117,21 @@ pub fn stress_error(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
     (square(&|s| s.stress - truth(s.strain)) / square(&|s| truth(s.strain))).sqrt()
 }
 
-/// Share of the rows whose 95 % band holds the truth.
+/// Share of the rows whose 95 % band contains the truth.
 pub fn coverage(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
     let inside = |sample: &&Sample| {
         let stress = truth(sample.strain);
-        // Both are zero at zero strain, to rounding.
+        // Both are zero at zero strain, up to rounding.
         let slack = 1e-12 * (1.0 + stress.abs());
         sample.band.is_some_and(|[low, high]| low - slack <= stress && stress <= high + slack)
     };
     samples.iter().filter(inside).count() as f64 / samples.len() as f64
 }
 
-/// A folder or file of the real measurements, below the folder that `FIT_CLOTH_DATA` names.
+/// A folder or file of the real measurements, in the folder named by `FIT_CLOTH_DATA`.
 ///
 /// # Panics
-/// When the variable is not set or nothing of that name is there: a test without its data has not been run.
+/// If the variable is not set or the file is missing: a test without its data has not been run.
 pub fn data(name: &str) -> PathBuf {
     let Some(root) = std::env::var_os("FIT_CLOTH_DATA") else {
         panic!("set FIT_CLOTH_DATA to the folder with the real measurements: this test needs {name} from it");
@@ -141,7 +141,7 @@ pub fn data(name: &str) -> PathBuf {
     path
 }
 
-/// The fields of a simple comma-separated file of the reference data, without its header; no field is quoted with a comma.
+/// Fields of a comma-separated file of the reference data, without its header; quoted commas do not occur.
 ///
 /// # Panics
 /// If it cannot be read.

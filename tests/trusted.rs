@@ -1,4 +1,4 @@
-//! Source: none; what unsound curves do is told by Strohkorb 2019, §4.2 and figure 7.
+//! Source: none; the effects of unsound curves are described by Strohkorb 2019, §4.2 and figure 7.
 //!
 //! Goal: a curve that passes the check does not make a simulation diverge.
 //!
@@ -7,8 +7,9 @@
 //!    ╲____╱       StVK and soft constraints in turn, implicit Euler, 10 ms and 0.1 s
 //! ```
 //!
-//! Parameters: the 1000 random curves of `repair.rs`, each as it is if it is sound, else repaired; 2 × 20 steps. Passes when
-//! every step ends at finite numbers, and the energy never exceeds that of the start by more than 1e-6 of its scale.
+//! Parameters: the 1000 random curves of `repair.rs`, each unchanged if sound, otherwise repaired; 2 × 20 steps.
+//! Passes when every step ends with finite numbers, and the energy never exceeds that of the start by more than 1e-6
+//! of its scale.
 
 use cloth_fit::judge::repair::repair;
 use cloth_sim::curve::StiffnessCurve;
@@ -52,7 +53,7 @@ fn no_curve_that_passes_the_check_makes_a_simulation_diverge() {
         let curve = if check(&given, &context).is_empty() {
             given
         } else {
-            // Where the stress is negative on the whole there is none.
+            // A curve with stress that is negative overall cannot be repaired.
             let Ok(repaired) = repair(&given, &context) else { continue };
             repaired.curve
         };
@@ -83,7 +84,7 @@ fn no_curve_that_passes_the_check_makes_a_simulation_diverge() {
         "{simulated} curves simulated, {unsolved} of {} steps not solved to the tolerance; {remedies:?}",
         40 * simulated
     );
-    // Some of these steps must be begun anew, and that is told.
+    // Some of these steps must be restarted, and that is reported.
     assert!(remedies.careful > 0 && remedies.careful * 10 < 40 * simulated, "{remedies:?}");
     assert!(simulated > 980 && unsolved * 1000 < 40 * simulated, "{simulated} {unsolved}");
 }

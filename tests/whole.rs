@@ -1,14 +1,14 @@
-//! The whole fit of four known fabrics, from the virtual rig: eight tests on 61×61 nodes, seen on 10 000 vertices, fitted
-//! on 25×25.
+//! The whole fit of four known fabrics measured by the virtual rig: eight tests on 61×61 nodes, sampled at 10 000
+//! vertices, fitted on 25×25.
 //!
 //! ```text
-//! rig ──▶ stretch, picture frame, three overhangs ──▶ six curves ──▶ complex shear, corner pull: not seen by the fit
+//! rig ──▶ stretch, picture frame, three overhangs ──▶ six curves ──▶ complex shear, corner pull: not used in the fit
 //! ```
 //!
-//! Stress of stretch comes back within 1 %, of shear within 3 %, moments of bending within 5 % (relative L2 over the visited
-//! range), and far better in the second pass over shear, which lets the sheet buckle, than in the first; with the noise of the
-//! instruments and the friction of the cords within 2, 5 and 10 %. The two motions that no fit
-//! saw are met within 10 % of the range of their measure.
+//! The fit recovers stretch stress within 1 %, shear stress within 3 % and bending moments within 5 % (relative L2
+//! over the visited range). The second pass over shear, which lets the sheet buckle, is far more accurate than the
+//! first. With instrument noise and cord friction the bounds are 2, 5 and 10 %. The two motions not used in any fit
+//! are predicted within 10 % of the range of their measure.
 
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::rig::{KnownFabric, Rig};
@@ -141,7 +141,7 @@ fn another_sample_is_met_as_far_as_it_differs() {
             })
             .fold(0.0, f64::max)
     });
-    // Its curves are those of the first times factors within about 10 %.
+    // Its curves are those of the first sample times factors within about 10 %.
     assert!(shares[0] < 0.01 && shares[1] > shares[0] && shares[1] < 0.3);
 }
 

@@ -1,4 +1,4 @@
-//! What the targets share: files on disk of which one is fuzzed, and what must be true of every answer.
+//! Shared code of the fuzz targets: files on disk, one of them fuzzed, and checks of every result.
 
 #![forbid(unsafe_code)]
 
@@ -10,10 +10,10 @@ use cloth_sim::curve::StiffnessCurve;
 use std::fs;
 use std::path::PathBuf;
 
-/// A message is for one line of a terminal, give or take lists of what is known.
+/// Maximum length of a message, meant for one terminal line apart from lists of permitted names.
 const LONGEST_MESSAGE: usize = 1000;
 
-/// A folder with one set of a 4-vertex strip that is pulled and one that bends, and whatever a target puts there.
+/// A folder with a set of one pulled and one bent 4-vertex strip, and the files of a target.
 pub struct Sample {
     folder: PathBuf,
 }
@@ -39,7 +39,7 @@ impl Default for Sample {
 }
 
 impl Sample {
-    /// Where a file or folder is.
+    /// Path of a file or folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
@@ -51,24 +51,24 @@ impl Sample {
         path
     }
 
-    /// Makes a second name for a file.
+    /// Creates a hard link to a file.
     pub fn link(&self, name: &str, other: &str) {
         let _ = fs::remove_file(self.path(other));
         fs::hard_link(self.path(name), self.path(other)).expect("a link is made");
     }
 
-    /// Reads a sequence of which one file holds `bytes`: it is refused properly, or comes back as it was written.
+    /// Reads a sequence with one file set to `bytes`: it is refused with a proper message, or survives a round trip.
     pub fn read(&self, sequence: &str, bytes: &[u8]) {
         answer(read_sequence(&self.path(sequence)), bytes).into_iter().for_each(|read| self.comes_back(read));
     }
 
-    /// A sequence that was read is written and read again.
+    /// Writes a sequence that was read, and reads it again.
     pub fn comes_back(&self, read: Sequence) {
         assert!(numbers(&read).all(f64::is_finite), "{read:?}");
         let back = self.path("back");
         write_sequence(&back, &read).expect("what was read can be written");
         let mut rounded = read;
-        // Shapes are written as float32, where they are not so far out that this would be too coarse.
+        // Shapes are written as float32, except far from the origin, where that is too coarse.
         let shapes = rounded.frames.iter_mut().filter_map(|frame| frame.positions.as_mut());
         let shapes: Vec<_> = shapes.flatten().collect();
         if !shapes.iter().any(|position| position.amax() > 1000.0) {
@@ -79,7 +79,7 @@ impl Sample {
     }
 }
 
-/// What was read, if it was; a refusal must say what is wrong, and where, in one line.
+/// The value read, if any; an error must state cause and place in one line.
 pub fn answer<T>(result: Result<T>, bytes: &[u8]) -> Option<T> {
     let error = match result {
         Ok(read) => return Some(read),
@@ -94,13 +94,13 @@ pub fn answer<T>(result: Result<T>, bytes: &[u8]) -> Option<T> {
     None
 }
 
-/// Debug output tells every bit of a float but those of a NaN, which differs from itself.
+/// Compares debug output, which shows every bit of a float except of NaN, which differs from itself.
 pub fn same(a: &impl std::fmt::Debug, b: &impl std::fmt::Debug) {
     let [a, b] = [format!("{a:?}"), format!("{b:?}")];
     assert_eq!(a, b);
 }
 
-/// All numbers of a sequence but its shapes, which may be NaN where they were not observed.
+/// All numbers of a sequence except its shapes, which may contain NaN.
 fn numbers(sequence: &Sequence) -> impl Iterator<Item = f64> {
     let Sequence { gravity, noise, force_direction, table, mesh, clips, frames, .. } = sequence;
     let mut numbers = gravity.as_slice().to_vec();
@@ -120,7 +120,7 @@ fn numbers(sequence: &Sequence) -> impl Iterator<Item = f64> {
     numbers.into_iter()
 }
 
-/// `positions.npy` with the rest shape and one moved, of which a vertex was not observed.
+/// `positions.npy` with the rest shape and a moved one with an unobserved vertex.
 fn positions() -> Vec<u8> {
     let mut header = String::from("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 4, 3), }");
     header = format!("{header:<117}\n");
@@ -136,14 +136,14 @@ fn positions() -> Vec<u8> {
     bytes
 }
 
-/// The first two columns of a table, as a user would name them.
+/// The first two columns of a table, in the form a user gives them.
 pub fn columns(table: &[u8]) -> Option<[Column; 2]> {
     let header = std::str::from_utf8(table).ok()?.lines().next()?;
     let mut names = header.split(',').map(|name| Column::from(name.trim().trim_matches('"')));
     Some([names.next()?, names.next()?])
 }
 
-/// A curve that was read tells a finite stress, tangent and energy wherever its control points are.
+/// Checks that a curve has finite stress, tangent and energy around its control points.
 pub fn evaluate(curve: &StiffnessCurve) {
     for strain in curve.strains().iter().flat_map(|&strain| [-strain, 0.5 * strain, strain, 1.1 * strain]) {
         let response = curve.response(strain);

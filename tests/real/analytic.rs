@@ -1,7 +1,7 @@
-//! Closed forms from files.
+//! Closed-form reference values from files.
 //!
 //! ```text
-//!  goal    the sums over elements against references made by other means
+//!  goal    element sums agree with independent references
 //!  data    analytic/: an irregular 5×5 patch under an affine map into space; strips under uniaxial tension;
 //!          rolled sheets of several meshes; catenaries
 //!  passes  patch: inner forces 1e-12 N, border 1e-10 N, energy 1e-12; uniaxial 1e-8; rigidity 0.1 %;
@@ -23,7 +23,7 @@ fn number(field: &str) -> f64 {
     field.parse().unwrap_or_else(|_| panic!("{field} is no number"))
 }
 
-/// Vertices and triangles of an OBJ file in which `v` and `vt` go together.
+/// Vertices and triangles of an OBJ file whose `v` and `vt` share indices.
 fn patch_mesh() -> Mesh {
     let text = std::fs::read_to_string(data("analytic/patch_mesh.obj")).expect("a text file");
     let (mut positions, mut material, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
@@ -66,7 +66,7 @@ fn patch_forces() {
             let inside = |c: f64| c > 1e-9 && c < 0.1 - 1e-9;
             let inner = inside(material[vertex].x) && inside(material[vertex].y);
             for i in 0..3 {
-                // The file has the force on the vertex, the gradient is its opposite.
+                // The file contains the force on the vertex, the negative gradient.
                 let error = (gradient[3 * vertex + i] + number(&row[1 + i])).abs();
                 assert!(error < if inner { 1e-12 } else { 1e-10 }, "{model}, {vertex}: {error:e}");
             }
@@ -96,7 +96,7 @@ fn uniaxial_linear() {
     }
 }
 
-/// A mesh of copies of a cell: vertices, and triangles that name them, merged where they coincide.
+/// A mesh of copies of a cell, given by triangles; coincident vertices are merged.
 fn tiled(cell: [f64; 2], counts: [usize; 2], triangles: &[[[f64; 2]; 3]]) -> Mesh {
     let (mut material, mut indices) = (Vec::<Vector2<f64>>::new(), Vec::new());
     for row in 0..counts[1] {
@@ -117,7 +117,7 @@ fn tiled(cell: [f64; 2], counts: [usize; 2], triangles: &[[[f64; 2]; 3]]) -> Mes
     Mesh::new(positions, material, indices).expect("a proper mesh")
 }
 
-/// Effective rigidity over stiffness: the hinges whose edges' middles lie in a window of whole cells.
+/// Effective rigidity over stiffness, from the hinges with edge midpoints in a window of whole cells.
 fn rigidity(mesh: &Mesh, cell: [f64; 2], degrees: f64) -> f64 {
     let radius = 1e4 * cell[0];
     let place = |m: &Vector2<f64>| <[f64; 3]>::from(rolled(*m, degrees.to_radians(), radius));
@@ -141,7 +141,7 @@ fn hinge_effective_rigidity() {
     let [low, right, high, up, middle] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
     let cross = [[low, right, middle], [right, high, middle], [high, up, middle], [up, low, middle]];
     let grid = [[low, right, high], [low, high, up]];
-    // Four cells of the grid, the diagonals of a chessboard.
+    // Four cells of the grid, with diagonals like a chessboard.
     let [south, east, north, west] = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]];
     let alternating = [
         [low, south, middle],
@@ -153,7 +153,7 @@ fn hinge_effective_rigidity() {
         [west, middle, up],
         [middle, north, up],
     ];
-    // Two rows of equilateral triangles; the cell is as wide as one and as high as two.
+    // Two rows of equilateral triangles; the cell has the width of one and the height of two.
     let beside = |[x, y]: [f64; 2]| [x + 1.0, y];
     let lattice = [
         [low, right, middle],

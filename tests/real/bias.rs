@@ -1,7 +1,7 @@
-//! Source: bias extension. A glass and polypropylene plain weave (cao2008_bias_extension/, Cao et al. 2008, figure 38), and
-//! the bias strips of a cotton knit and a cupro weave in a tensile machine (u3m_fab_*/B_S2.csv).
+//! Source: bias extension. A glass and polypropylene plain weave (cao2008_bias_extension/, Cao et al. 2008, figure
+//! 38), and the bias strips of a cotton knit and a cupro weave in a tensile machine (u3m_fab_*/B_S2.csv).
 //!
-//! Goal: the sets from which a shear curve is fitted, what is known of them, and that the fit meets it.
+//! Goal: the bias sets that determine a shear curve, their reference values, and the agreement of the fit.
 //!
 //! ```text
 //!   fixed ┌──────────────────┐ moving   yarns at ±45°; H × W = 450 × 150 mm, pulled by 106 mm;
@@ -9,22 +9,24 @@
 //!         └──────────────────┘
 //! ```
 //!
-//! Yarns that do not stretch make the middle shear alike everywhere:
+//! With inextensible yarns the middle zone is in homogeneous shear:
 //!
 //! ```text
 //! γ = π/2 − 2 acos((L + d)/(√2 L))        L = H − W, d the displacement (Cao et al. 2008, eq. 13)
 //! F_s(γ) = [(H/W − 1) F (cos γ/2 − sin γ/2) − W F_s(γ/2) cos γ/2] / [(2H − 3W) cos γ]        (eq. 18)
 //! ```
 //!
-//! Parameters: eq. 13 meets the file's column within 0.01° + 0.1 %, eq. 18 within 0.1 %; forces and extensions in the sets are the files'.
-//! Glass with yarns of 1e5 N/m: the simulated angle, as the mean along the axis of the zone that eq. 13 is about, is within 2°
-//! of it up to 35°, and the curve predicts the pull of a strip of 230 × 115 mm at 10–40° within 35 %. Knit, stretch from L_S2 and
-//! W_S2: RMS ≤ 3 % of the largest force; stress at strain 1 within 0.5 % of each other on three grids.
+//! Parameters: eq. 13 agrees with the file's column within 0.01° + 0.1 %, eq. 18 within 0.1 %; forces and extensions
+//! in the sets equal the files'. Glass with yarns of 1e5 N/m: the simulated angle, as the mean along the axis of the
+//! zone described by eq. 13, is within 2° of it up to 35°, and the curve predicts the pull of a strip of 230 × 115 mm
+//! at 10–40° within 35 %. Knit, stretch from L_S2 and W_S2: RMS ≤ 3 % of the largest force; stress at strain 1 within
+//! 0.5 % of each other on three grids.
 //!
-//! At the centre alone the angle is up to 4.5° below eq. 13. Yarns that do not stretch fix how far the middle zone (H − W
-//! long) is drawn, so the mean of γ over its axis; but a yarn that crosses yarns from a clamp shears them alone, at half the
-//! angle, and yields more: with the fitted curve γ runs from 25° at the centre to 32° at the zone's ends where eq. 13 says
-//! 29°. Finer cells (21 × 61 nodes), soft constraints and yarns of 1e6 N/m change it by 0.4° at most: it is the least energy.
+//! At the centre alone the angle is up to 4.5° below eq. 13. Inextensible yarns fix the elongation of the middle zone
+//! (H − W long), and thus the mean of γ over its axis. A yarn that crosses yarns from a clamp shears only these, at
+//! half the angle, and yields more: with the fitted curve γ runs from 25° at the centre to 32° at the zone's ends
+//! where eq. 13 gives 29°. Finer cells (21 × 61 nodes), soft constraints and yarns of 1e6 N/m change it by 0.4° at
+//! most: it is the energy minimum.
 
 use cloth_data::frame::{Frame, Kind, MeasurementSet, Sequence};
 use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
@@ -43,21 +45,21 @@ use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 use std::path::Path;
 
-/// The specimen whose table there is.
+/// The specimen with a table.
 pub(crate) const LARGE: BiasStrip = BiasStrip { length: 0.45, width: 0.15 };
 
-/// Another of the same weave, of which the README has the normalised shear force at four angles.
+/// Another specimen of the same weave; the README gives its normalised shear force at four angles.
 pub(crate) const SMALL: BiasStrip = BiasStrip { length: 0.23, width: 0.115 };
 
 /// Shear angle, °, and normalised shear force of [`SMALL`], N/m.
 const SMALL_FORCES: [[f64; 2]; 4] = [[10.0, 5.3], [20.0, 9.8], [30.0, 13.2], [40.0, 19.1]];
 
-/// A strip cut at 45°, with yarns that do not stretch.
+/// A strip cut at 45°, with inextensible yarns.
 #[derive(Clone, Copy)]
 pub(crate) struct BiasStrip {
-    /// Between the clamps, m.
+    /// Clamp distance, m.
     pub(crate) length: f64,
-    /// Across the pull, m.
+    /// Width across the pull, m.
     pub(crate) width: f64,
 }
 
@@ -68,13 +70,13 @@ impl BiasStrip {
         FRAC_PI_2 - 2.0 * ((free + displacement) / (SQRT_2 * free)).acos()
     }
 
-    /// Its inverse.
+    /// Inverse of [`BiasStrip::angle`].
     pub(crate) fn displacement(&self, angle: f64) -> f64 {
         let free = self.length - self.width;
         free * (SQRT_2 * (FRAC_PI_4 - angle / 2.0).cos() - 1.0)
     }
 
-    /// Shear force per length, N/m, from pull, N, and the one at half the angle: eq. 18.
+    /// Shear force per length, N/m, from the pull, N, and the value at half the angle: eq. 18.
     fn normalised(&self, angle: f64, pull: f64, at_half: f64) -> f64 {
         let Self { length, width } = self;
         let (sine, cosine) = (angle / 2.0).sin_cos();
@@ -82,8 +84,8 @@ impl BiasStrip {
             / ((2.0 * length - 3.0 * width) * angle.cos())
     }
 
-    /// Normalised shear forces, N/m, of rising angles, rad, and pulls, N. At half an angle the force is interpolated in
-    /// what is known by then.
+    /// Normalised shear forces, N/m, for ascending angles, rad, and pulls, N. The force at half an angle is
+    /// interpolated from the values computed so far.
     pub(crate) fn normalised_forces(&self, pulls: &[[f64; 2]]) -> Vec<f64> {
         let mut known: Vec<[f64; 2]> = Vec::new();
         for &[angle, pull] in pulls {
@@ -92,13 +94,13 @@ impl BiasStrip {
         known.into_iter().map(|[_, force]| force).collect()
     }
 
-    /// The pull that a normalised shear force stands for, N.
+    /// Pull that corresponds to a normalised shear force, N.
     fn pull(&self, angle: f64, force: f64, at_half: f64) -> f64 {
         let without = self.normalised(angle, 0.0, at_half);
         (force - without) / (self.normalised(angle, 1.0, at_half) - without)
     }
 
-    /// A set from a table.
+    /// Reads a set from a table.
     fn read(&self, table: &Path) -> MeasurementSet {
         let displacement = Extension::Displacement("displacement_mm".into());
         let test = StripTest::new(Direction::Bias, self.length, self.width, displacement, "force_N".into());
@@ -106,7 +108,7 @@ impl BiasStrip {
     }
 }
 
-/// Linear between points, constant beyond; 0 if there is none.
+/// Linear interpolation, constant beyond the ends; 0 without points.
 fn interpolated(points: &[[f64; 2]], at: f64) -> f64 {
     match points.iter().position(|[x, _]| *x >= at) {
         Some(0) => points[0][1],
@@ -118,7 +120,7 @@ fn interpolated(points: &[[f64; 2]], at: f64) -> f64 {
     }
 }
 
-/// The weave's measured pulls.
+/// The measured pulls of the weave.
 pub(crate) fn glass() -> MeasurementSet {
     LARGE.read(&data("cao2008_bias_extension").join("glass_plain_150x450mm.csv"))
 }
@@ -196,7 +198,7 @@ fn pulls_become_shear_forces_and_back() {
     }
     let rising: Vec<f64> = frames.iter().map(pull).collect();
     assert!(rising.is_sorted() && rising[0] > 0.5 && rising[3] < 20.0);
-    // At 20° half the angle is one of the four: eq. 18 gives the force back.
+    // At 20°, half of the angle is one of the four: eq. 18 returns the force.
     let angle = 20f64.to_radians();
     assert!((SMALL.normalised(angle, rising[1], 5.3) - 9.8).abs() < 1e-9);
 }
@@ -215,7 +217,7 @@ fn bias_strips_of_the_tensile_machine_are_read() {
     }
 }
 
-/// Mean shear angle, rad, of the triangles whose middle lies in a rectangle around that of the strip.
+/// Mean shear angle, rad, of the triangles with centres in a rectangle around the centre of the strip.
 ///
 /// * `half` — half its length and half its width, m
 fn mean_angle(settled: &Settled<'_>, half: [f64; 2]) -> f64 {
@@ -291,7 +293,7 @@ fn glass_shears_as_its_yarns_let_it_and_predicts_another_strip() {
     }
     println!("glass: the smaller strip within {:.0} %", 100.0 * off);
     assert!(stage.converged && stage.dropped.is_empty() && small.dropped.is_empty());
-    // The least tangent allowed is far below any that is needed, however little the yarns give.
+    // The lower bound of the tangent is inactive, however little the yarns stretch.
     assert_eq!(stage.curve.active_constraints, 0);
     assert!(zone <= 2.0 && centre <= 4.5 && off <= 0.35);
 }
@@ -337,7 +339,7 @@ fn the_shear_stress_of_a_knit_on_the_bias_does_not_depend_on_the_grid() {
     let strips = [("W_S2", Direction::Weft), ("L_S2", Direction::Warp), ("B_S2", Direction::Bias)];
     let sequences = strips.map(|(strip, direction)| crate::strips::import(fabric, strip, direction));
     let mut set = weightless(fabric, sequences.to_vec());
-    // Every fourth frame tells as much of the grid.
+    // Every fourth frame suffices for a comparison of grids.
     for sequence in &mut set.sequences {
         sequence.frames = sequence.frames.iter().step_by(4).cloned().collect();
     }

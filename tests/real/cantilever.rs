@@ -1,6 +1,6 @@
 //! Source: the master curve of a heavy cantilever, by collocation (cantilever_master_curve/).
 //!
-//! Goal: the elastica that the bending tests are made of is the exact one.
+//! Goal: the elastica used in the bending tests is exact.
 //!
 //! ```text
 //!   ▒▒▒▒▒▒▒▒────╮        Γ = ρ g L³/D from 1e-3 to 1e4 on the curve, 0.1 to 1000 in the shapes
@@ -8,8 +8,8 @@
 //!             W   ╲
 //! ```
 //!
-//! Parameters: tip and clamp within 1e-5 of their values, shapes within 1e-5 of the length. The cloth, 36 cells along a strip of
-//! 90 mm × 30 mm: H/W within 2 %, at Γ = 100 within 3 %.
+//! Parameters: tip and clamp within 1e-5 of their values, shapes within 1e-5 of the length. The cloth, 36 cells along
+//! a strip of 90 mm × 30 mm: H/W within 2 %, at Γ = 100 within 3 %.
 
 use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::material::Model;

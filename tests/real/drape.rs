@@ -7,8 +7,8 @@
 //!      0.30 m          passes  3 points between meshes of 20 and 40 rings, where the coarse one can fold at all
 //! ```
 //!
-//! Folds of a fabric are as wide as some of its lengths (B/ρg)^⅓. A mesh whose cells are longer than half of that cannot
-//! fold: such a fabric is flagged, with both values.
+//! The folds of a fabric are a few lengths (B/ρg)^⅓ wide. A mesh with cells longer than half of that cannot fold:
+//! such a fabric is flagged, with both values.
 
 use cloth_fit::material::Material;
 use cloth_scene::drape::Drape;
@@ -22,7 +22,7 @@ const FABRICS: [&str; 4] = ["4", "399", "72", "500"];
 
 const GRAVITY: f64 = 9.81;
 
-/// The drape of a fabric, m: rigidity N·m, density kg/m².
+/// The drape of a fabric: rigidity N·m, density kg/m².
 fn drape(rigidity: f64, density: f64, rings: usize) -> (Drape, Simulation) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: String| {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   o────────o    source  Strohkorb 2019: wool of 15 kg, 10 m × 10 m, 100 vertices, weft and warp bear tension only
-//!   │        │    goal    the shapes that another program found, by another method
+//!   │        │    goal    agreement with the shapes of an independent program and method
 //!   │        │    data    gnatv_hang/
 //!   └──╲__╱──┘    passes  in its plane: every vertex 2 mm, support 0.1 %; in space: see below
 //! ```
@@ -17,7 +17,7 @@ use fit_cloth_tests::rows;
 /// The weight of 15 kg, N.
 const WEIGHT: f64 = 147.0;
 
-/// The shape at rest, 3 stacked coordinates a node; the force that holds it upwards, N; how it was found.
+/// The shape at rest, 3 stacked coordinates per node; the vertical support force, N; the descent.
 fn at_rest(sample: &Sample) -> (Vec<f64>, f64, Descent) {
     let cloth = sample.cloth().unwrap();
     let mut x = sample.start.clone();
@@ -64,7 +64,7 @@ fn in_space_it_hangs_as_low() {
     assert!((force / WEIGHT - 1.0).abs() < 1e-3, "{force}");
 }
 
-/// Where damped motion from the flat sheet, at rest, ends; 3 stacked coordinates a node.
+/// Final rest shape of a damped motion from the flat sheet; 3 stacked coordinates per node.
 fn after_motion(sample: &Sample) -> Vec<f64> {
     let cloth = sample.cloth().unwrap();
     // The slowest swing of 10 m takes seconds: α = 1/s damps it by a quarter.

@@ -1,7 +1,7 @@
 //! Source: hand-knit fabrics in uniaxial tension, five repeats each, force and tracked clamps: Singal, Dimitriyev,
 //! Gonzalez, Quinn, Matsumoto (sabetta/stitch-by-stitch, MIT).
 //!
-//! Goal: a curve from three pulls predicts the two that it has not seen.
+//! Goal: a curve fitted to three pulls predicts the other two.
 //!
 //! ```text
 //!      ▲ clamp_top        X is taken for weft, Y for warp; 39–110 mm long, 58–146 mm wide;
@@ -11,10 +11,11 @@
 //! ```
 //!
 //! Parameters: one rest length for all videos of a sample (`rest_clamp_length_m`), the width at the clamp. Fit to all
-//! frames of videos 1–3 beyond the rest length, with the defaults but a coarse grid: the strain is uniform. Over the eight
-//! strains of `loading_summary.csv`, RMS of measured − predicted force in videos 4 and 5 ≤ 12 % of that video's largest
-//! force, in nine samples of ten. How far the repeats themselves differ (videos 4 and 5 from the mean of 1–3) stands
-//! beside it. The narrowing (pins across, at the largest strain) is outside these models and only printed.
+//! frames of videos 1–3 beyond the rest length, with the defaults except a coarse grid, since the strain is uniform.
+//! Over the eight strains of `loading_summary.csv`, RMS of measured − predicted force in videos 4 and 5 ≤ 12 % of
+//! that video's largest force, in nine samples of ten. The scatter of the repeats themselves (videos 4 and 5 from the
+//! mean of 1–3) is printed for comparison. The narrowing (pins across, at the largest strain) is outside these models
+//! and only printed.
 
 use cloth_data::frame::{MeasurementSet, Sequence};
 use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
@@ -26,7 +27,7 @@ use fit_cloth_tests::{data, weightless};
 use std::fs::{read_to_string, write};
 use std::path::Path;
 
-/// What the files are taken to be.
+/// Expected form of the files.
 const SHAPE: &str = "tables with the columns that their README describes";
 
 const ALLOWED: f64 = 0.12;
@@ -53,13 +54,13 @@ impl Table {
     }
 }
 
-/// A sample, as `loading_summary.csv` has it.
+/// A sample as listed in `loading_summary.csv`.
 struct Knit {
     name: String,
     rest_length: f64,
     width: f64,
     strains: Vec<f64>,
-    /// Width over the rest width at the largest strain, mean of the videos.
+    /// Width at the largest strain relative to the rest width, mean of the videos.
     narrowed: f64,
 }
 
@@ -93,7 +94,7 @@ impl Knit {
         }
     }
 
-    /// Four cells along the shorter side, near square: the strain is uniform.
+    /// Four nearly square cells along the shorter side: the strain is uniform.
     fn nodes(&self) -> [usize; 2] {
         let shorter = self.rest_length.min(self.width);
         let nodes = |side: f64| (4.0 * side / shorter).round() as usize + 1;
@@ -103,7 +104,7 @@ impl Knit {
         }
     }
 
-    /// Imports the videos, from small tables.
+    /// Imports the videos from generated tables.
     fn set(&self, videos: [usize; 5]) -> [Sequence; 5] {
         let table = Table::read(&data("knits_uniaxial").join(format!("{}.csv", self.name)));
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -128,7 +129,7 @@ impl Knit {
         })
     }
 
-    /// Linear between frames, at the strains of the summary.
+    /// Linear interpolation between frames at the strains of the summary.
     fn at_strains(&self, report: &SequenceReport, value: fn(&ForceRow) -> f64) -> Vec<f64> {
         let rows = &report.forces;
         let at = |strain: f64| {
@@ -144,7 +145,7 @@ fn rms(a: &[f64], b: &[f64]) -> f64 {
     (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
 }
 
-/// Fits three videos and predicts two; how many samples are met.
+/// Fits three videos and predicts two; returns the number of samples within the tolerance.
 fn predicted(model: Model) -> usize {
     println!(
         "| sample ({model}) | points | fit % | 4: % | 5: % | all frames 4: % | 5: % | repeats 4: % | 5: % | narrowed to |"

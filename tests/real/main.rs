@@ -1,5 +1,5 @@
-//! Tests on reference and measured data that do not belong to the repository. They read the folder that the environment
-//! variable `FIT_CLOTH_DATA` names: `FIT_CLOTH_DATA=… cargo test -p fit-cloth-tests --test real`.
+//! Tests on reference and measured data outside the repository. The environment variable `FIT_CLOTH_DATA` names the
+//! data folder: `FIT_CLOTH_DATA=… cargo test -p fit-cloth-tests --test real`.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

@@ -1,7 +1,7 @@
-//! Motion against closed forms.
+//! Motion compared with closed forms.
 //!
 //! ```text
-//!  goal    time integration and masses, against what needs neither
+//!  goal    time integration and masses agree with closed forms
 //!  data    analytic/: period of a pendulum, modes of a hanging chain (Bessel's zeros) and of a cantilever
 //!  passes  pendulum: Runge–Kutta at a thousandth of the small period 1e-6, implicit Euler of first order;
 //!          modes: frequency within 1 % at 60 cells
@@ -25,7 +25,7 @@ use std::f64::consts::TAU;
 
 const GRAVITY: f64 = 9.8;
 
-/// Half periods over which a frequency is measured.
+/// Number of half periods over which a frequency is measured.
 const SWINGS: u32 = 10;
 
 fn numbers(name: &str) -> Vec<Vec<f64>> {
@@ -33,7 +33,7 @@ fn numbers(name: &str) -> Vec<Vec<f64>> {
     rows(name).iter().map(|row| row.iter().map(number).collect()).collect()
 }
 
-/// When a quantity next crosses zero downwards or upwards, by the cubic through both ends' values and slopes, s.
+/// Next zero crossing of a quantity, from the cubic through values and slopes at both ends, s.
 fn crossing(motion: &mut Motion<'_>, step: f64, value: impl Fn(&[f64]) -> f64) -> f64 {
     let sample = |motion: &Motion<'_>| [value(motion.positions()), value(motion.velocities())];
     let mut before = sample(motion);
@@ -59,8 +59,8 @@ fn crossing(motion: &mut Motion<'_>, step: f64, value: impl Fn(&[f64]) -> f64) -
     }
 }
 
-/// The period of a pendulum over that of small swings: a triangle whose base is the axis, `stiffness` times as stiff as its
-/// weight is heavy.
+/// Period of a pendulum relative to that of small swings: a triangle with its base on the axis and a stiffness of
+/// `stiffness` times its weight.
 fn pendulum(amplitude: f64, stiffness: f64, integrator: Integrator, steps: f64) -> f64 {
     let material = [[0.0, -0.5], [1.0, 0.0], [0.0, 0.5]].map(|[x, y]| Vector2::new(x, y));
     let positions = material.iter().map(|m| m.push(0.0)).collect();
@@ -92,14 +92,15 @@ fn a_pendulum_has_its_period() {
         let [degrees, expected] = row[..] else { panic!("{row:?}") };
         let period =
             |stiffness, integrator, steps| pendulum(degrees.to_radians(), stiffness, integrator, steps);
-        // The stretch of the arm changes the period by powers of 1/stiffness, of which two are taken out.
+        // The stretch of the arm changes the period by powers of 1/stiffness; two of them are eliminated.
         let stiffnesses = [1e3, 2e3, 4e3];
         let [soft, middle, stiff] =
             stiffnesses.map(|stiffness| period(stiffness, Integrator::RungeKutta, 1000.0));
         let off = (8.0 * stiff - 6.0 * middle + soft) / 3.0 / expected - 1.0;
         worst = worst.max(off.abs());
         let [coarse, fine] = [1000.0, 2000.0].map(|steps| period(4e3, implicit, steps) - stiff);
-        // The loss of energy shortens the period to first order, which small swings hardly feel: they keep theirs to second.
+        // Energy loss shortens the period to first order; small swings hardly depend on it and are accurate to second
+        // order.
         let fall = (coarse / fine).abs();
         println!(
             "pendulum, {degrees}°: {off:.1e} by Runge–Kutta, implicit Euler × {fall:.2} with half the step"
@@ -110,7 +111,7 @@ fn a_pendulum_has_its_period() {
     println!("pendulum: within {worst:.1e}");
 }
 
-/// The angular frequency of a mode that a cloth is pushed into across its plane, 1/s.
+/// Angular frequency of a mode excited across the plane of a cloth, 1/s.
 fn frequency(cloth: &Cloth, sample: &Sample, mode: impl Fn(Vector2<f64>) -> f64) -> f64 {
     let shape: Vec<f64> = sample.mesh.positions.iter().map(|p| mode(p.xy())).collect();
     let velocities = shape.iter().flat_map(|d| [0.0, 0.0, 1e-4 * d]).collect();
@@ -122,14 +123,14 @@ fn frequency(cloth: &Cloth, sample: &Sample, mode: impl Fn(Vector2<f64>) -> f64)
         let terms = x.chunks_exact(3).zip(&shape).zip(cloth.masses());
         terms.map(|((x, d), mass)| mass * d * x[2]).sum()
     };
-    // The first step leaves zero, where the motion starts. Over several swings what else was stirred averages out.
+    // The first step leaves zero, where the motion starts. Other excited modes average out over several swings.
     assert_eq!(motion.step().status, Status::Done);
     let first = crossing(&mut motion, step, along);
     let last = (0..SWINGS).fold(first, |_, _| crossing(&mut motion, step, along));
     0.5 * TAU * f64::from(SWINGS) / (last - first)
 }
 
-/// J₀ by its series, good to 1e-10 up to 12.
+/// J₀ by its series, accurate to 1e-10 up to 12.
 fn bessel(x: f64) -> f64 {
     let (mut term, mut sum) = (1.0, 1.0);
     for k in 1..60 {

@@ -1,13 +1,13 @@
 //! Source: NIST/ITL Statistical Reference Datasets, nonlinear regression, the 8 problems of lower and the 11 of
 //! average difficulty, with parameters, their standard deviations and the residual certified to 11 digits.
 //!
-//! Goal: the nonlinear least-squares core finds the certified minimum of all 19, from the far start and the near one, and
-//! the covariance has the certified standard deviations.
+//! Goal: the nonlinear least-squares core finds the certified minimum of all 19, from the far start and the near one,
+//! and the covariance gives the certified standard deviations.
 //!
-//! Parameters: certified values match to 5 digits (4 for Hahn1 and Kirby2), their standard deviations to 4, the residual
-//! sum of squares to 1e-7. Lanczos1's sum, 1.4e-25, is below what 64-bit numbers can hold, and its standard deviations
-//! follow from it: both are shown, and not asked for. Options are the defaults, the same for all; the Jacobian is exact
-//! (complex steps).
+//! Parameters: certified values match to 5 digits (4 for Hahn1 and Kirby2), their standard deviations to 4, the
+//! residual sum of squares to 1e-7. Lanczos1's sum, 1.4e-25, is below the resolution of 64-bit numbers, and its
+//! standard deviations derive from it: both are shown but not checked. Options are the defaults, the same for all
+//! problems; the Jacobian is exact (complex steps).
 
 use cloth_fit::optimise::gauss_newton::{Domain, Evaluation, Options, Outcome, Residuals, minimise};
 use cloth_fit::optimise::uncertainty::{Covariance, Scatter};
@@ -18,10 +18,10 @@ use std::convert::Infallible;
 use std::f64::consts::PI;
 use std::fs::read_to_string;
 
-/// What the files are taken to be.
+/// Expected form of the files.
 const SHAPE: &str = "a data set in the form that its README describes";
 
-/// Its residual is lost in rounding.
+/// The problem with a residual below rounding.
 const BELOW_ROUNDING: &str = "Lanczos1";
 
 type C = Complex<f64>;
@@ -61,7 +61,7 @@ fn one() -> C {
     C::from(1.0)
 }
 
-/// To first order in the imaginary part, which the general one loses.
+/// Arctangent to first order in the imaginary part, which the library function loses.
 fn arctangent(z: C) -> C {
     C::new(z.re.atan(), z.im / (1.0 + z.re * z.re))
 }
@@ -88,7 +88,7 @@ struct Problem {
     certified: Vec<f64>,
     certified_deviations: Vec<f64>,
     certified_sum_of_squares: f64,
-    /// How often the model was evaluated, each time with its Jacobian.
+    /// Number of evaluations of the model, each with its Jacobian.
     evaluations: usize,
 }
 
@@ -125,13 +125,13 @@ impl Problem {
         }
     }
 
-    /// Fits from one of the starts and compares with what is certified.
+    /// Fits from one of the starts and compares with the certified values.
     fn fit(&mut self, start: usize) -> Comparison {
         let from = self.starts[start].clone();
         let domain = Domain::everywhere(from.len());
         let Ok(outcome) = minimise(self, &from, &domain, &Options::default(), &mut |_| {});
         let rank = Covariance::rank_of(&outcome.jacobian);
-        // The points follow no order, and the noise is what is left of them: s² = ‖r‖²/(n − p).
+        // The points are unordered, and the residual is pure noise: s² = ‖r‖²/(n − p).
         let scatter = Scatter::new(&outcome.residual, &outcome.jacobian, rank, &[], None);
         let deviations = Covariance::new(&outcome.jacobian, &scatter).standard_deviations();
         Comparison {
@@ -146,8 +146,8 @@ impl Problem {
     }
 }
 
-/// Log relative error −log₁₀ |found / certified − 1| of the worst value: its matching digits, 11 at most, for no more
-/// are certified. What was not found has none.
+/// Log relative error −log₁₀ |found / certified − 1| of the worst value, the number of matching digits: at most 11,
+/// the certified ones; 0 for missing values.
 fn worst_digits(certified: &[f64], found: impl ExactSizeIterator<Item = Option<f64>>) -> f64 {
     assert_eq!(certified.len(), found.len());
     let digits = |(certified, found): (&f64, Option<f64>)| {
@@ -157,13 +157,13 @@ fn worst_digits(certified: &[f64], found: impl ExactSizeIterator<Item = Option<f
     certified.iter().zip(found).map(digits).fold(11.0, f64::min)
 }
 
-/// A fit beside what is certified.
+/// A fit compared with the certified values.
 struct Comparison {
     name: &'static str,
     start: usize,
-    /// Digits of the worst parameter.
+    /// Matching digits of the worst parameter.
     parameters: f64,
-    /// Digits of the worst standard deviation.
+    /// Matching digits of the worst standard deviation.
     deviations: f64,
     /// Relative error of the residual sum of squares.
     squares: f64,

@@ -1,7 +1,7 @@
 //! Source: exact homogeneous shear of a 100 mm square in a picture frame: under the shear curve of a wool fabric
 //! (synthetic_frames/), and under a constant stiffness (analytic/).
 //!
-//! Goal: from shear angle and diagonal pull alone, the fit finds the stress.
+//! Goal: the fit recovers the stress from shear angle and diagonal pull alone.
 //!
 //! ```text
 //!      ╱────────╱ ↗ F      four bars of 100 mm, hinged at the corners; wool 0.5–7.5° in eight frames,
@@ -10,8 +10,9 @@
 //! ```
 //!
 //! Parameters: the force along each bar F / (2 cos(π/4 − γ/2)) is the files' stress times the side within 1e-6, the
-//! diagonals within 1e-8. Wool: five control points at most, force residual ≤ 0.6 % of the largest force, stress within 1 %
-//! (relative L2 over the frames' strains). Constant: simulated forces within 1e-8, and so the fitted stiffness.
+//! diagonals within 1e-8. Wool: five control points at most, force residual ≤ 0.6 % of the largest force, stress
+//! within 1 % (relative L2 over the frames' strains). Constant: simulated forces within 1e-8, and so the fitted
+//! stiffness.
 
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::measure::{clamped, effective_shear};
@@ -26,13 +27,13 @@ use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::picture_frame::{PictureFrame, SIDE, diagonal, force_along_bars};
 use fit_cloth_tests::rows;
 
-/// A set and the law behind it: shear strain and stress, N/m, of the frames after the first.
+/// A set and its exact law: shear strain and stress, N/m, of the frames after the first.
 pub(crate) struct Known {
     pub(crate) set: MeasurementSet,
     pub(crate) law: Vec<[f64; 2]>,
 }
 
-/// What is read of a frame.
+/// Fields of a frame.
 struct Row {
     angle: f64,
     diagonal: f64,
@@ -43,7 +44,7 @@ struct Row {
 
 fn known(rows: &[Row]) -> Known {
     let pulls = rows.iter().map(|row| [row.angle, force_along_bars(row.force, row.angle)]);
-    // Seen flat: a sheet that nobody saw may have buckled.
+    // Observed flat: an unobserved sheet may have buckled.
     Known {
         set: PictureFrame { shapes: true, ..PictureFrame::of_pulls(pulls.collect()) }.measure(),
         law: rows.iter().map(|row| [row.strain, row.stress]).collect(),
@@ -77,12 +78,12 @@ fn linear_rows() -> Vec<Row> {
     })
 }
 
-/// Wool.
+/// The wool set.
 pub(crate) fn wool() -> Known {
     known(&wool_rows())
 }
 
-/// A constant 50 N/m.
+/// The set with a constant 50 N/m.
 pub(crate) fn linear() -> Known {
     known(&linear_rows())
 }
@@ -107,7 +108,7 @@ fn diagonal_pulls_become_forces_along_the_bars() {
     }
 }
 
-/// Relative L2 error over the frames of a curve's stress.
+/// Relative L2 error of a curve's stress over the frames.
 fn stress_off(curve: &StiffnessCurve, law: &[[f64; 2]]) -> f64 {
     let square = |f: &dyn Fn(&[f64; 2]) -> f64| law.iter().map(|row| f(row).powi(2)).sum::<f64>();
     (square(&|[strain, stress]| curve.stress(*strain) - stress) / square(&|[_, stress]| *stress)).sqrt()

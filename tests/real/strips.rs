@@ -1,7 +1,8 @@
 //! Source: strips of a cotton knit and a cupro weave in a tensile machine, the raw data of Browzwear's FAB in the U3M
 //! 1.1 samples (vizoogmbh/u3m, BSD-3), put into SI units.
 //!
-//! Goal: the fit reaches what a curve can reach on real fabric. 1-D least squares leave 0.15–0.65 % of the largest force.
+//! Goal: the fit reaches the best possible residual of a curve on real fabric. 1-D least squares leave 0.15–0.65 % of
+//! the largest force.
 //!
 //! ```text
 //!   fixed ┌────────────────┐ moving   40 or 50 mm × 81 mm; loads and unloads four times,
@@ -10,8 +11,8 @@
 //! ```
 //!
 //! Parameters: all rows of branch 6 beyond the gauge length, at which the strip is just taut; five control points at
-//! most, else the defaults. RMS of measured − simulated force ≤ 1 % of the largest force, in warp (L) and weft (W), for
-//! every model.
+//! most, otherwise the defaults. RMS of measured − simulated force ≤ 1 % of the largest force, in warp (L) and weft
+//! (W), for every model.
 
 use cloth_data::frame::{MeasurementSet, Sequence};
 use cloth_data::io::read_set;
@@ -23,7 +24,7 @@ use fit_cloth_tests::{data, weightless};
 use serde_json::Value;
 use std::fs::read_to_string;
 
-/// What the files are taken to be.
+/// Expected form of the files.
 const SHAPE: &str = "a strip test in the form that its README describes";
 
 pub(crate) const FABRICS: [&str; 2] = ["u3m_fab_cotton_knit", "u3m_fab_cupro_weave"];
@@ -55,7 +56,7 @@ pub(crate) fn import(fabric: &str, strip: &str, direction: Direction) -> Sequenc
     read_strip(&data(fabric).join(format!("{strip}.csv")), &test).unwrap().sequence
 }
 
-/// Fits a strip, prints how, and gives the force residual as a share of the largest force.
+/// Fits a strip, prints the result, and returns the force residual relative to the largest force.
 fn residual(set: &MeasurementSet, component: Component, settings: &Settings) -> f64 {
     let report = stretch::fit(set, component, settings, &mut Watch::default()).unwrap().unwrap();
     let StageReport { sequences, scatter, .. } = &report;

@@ -1,7 +1,7 @@
 //! Source: exact homogeneous stretch of a 100 mm square under the weft curve of a wool fabric (Volino et al. 2009, as
 //! published again by Strohkorb 2019), diagonalised StVK.
 //!
-//! Goal: from clip separation and clip force alone, the fit finds the stress.
+//! Goal: the fit recovers the stress from clip separation and clip force alone.
 //!
 //! ```text
 //!   ┌───────────┐
@@ -18,7 +18,7 @@ use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::{data, weightless};
 use std::fs::read_to_string;
 
-/// What the file is taken to be.
+/// Expected form of the file.
 const SHAPE: &str = "a table with the columns that its README describes";
 
 const GREEN_STRAIN: usize = 3;

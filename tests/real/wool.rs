@@ -1,7 +1,7 @@
-//! Source: the wool of Strohkorb 2019 (after Volino et al. 2009), stress–strain tables and the forces behind them; elongations
-//! of strips and of hanging strips computed from the tables by interpolation on straight lines.
+//! Source: the wool of Strohkorb 2019 (after Volino et al. 2009): stress–strain tables and the forces behind them;
+//! elongations of strips and of hanging strips, computed from the tables by linear interpolation.
 //!
-//! Goal: a laboratory's table becomes the curve that a simulation needs, and a simulated strip has its elongation.
+//! Goal: a laboratory table becomes a simulation curve, and a simulated strip has the reference elongation.
 //!
 //! ```text
 //!   ▌▔▔▔▔▔▔▔▔▐ → F       ▔▔▔▔ fixed
@@ -10,9 +10,9 @@
 //!  free to narrow        └──┘ drop of the bottom edge
 //! ```
 //!
-//! Parameters: diagonalised StVK, tables as published. Elongation within 0.1 % for weft on 0.20 m and warp on 0.05 m, within
-//! 3 % for warp on 0.20 m (the reference's two columns differ by 2.8 % there: forces small against the first row); drop
-//! within 1 % on 48 elements along the height.
+//! Parameters: diagonalised StVK, tables as published. Elongation within 0.1 % for weft on 0.20 m and warp on 0.05 m,
+//! within 3 % for warp on 0.20 m (where the two columns of the reference differ by 2.8 %: the forces are small
+//! compared with the first row); drop within 1 % on 48 elements along the height.
 
 use cloth_data::curve_file::CurveFile;
 use cloth_data::strip::{Extension, ForceTable, Measure, read_force_table};
@@ -32,9 +32,9 @@ fn number(field: &str) -> f64 {
     field.parse().unwrap_or_else(|_| panic!("{field:?} is no number"))
 }
 
-/// A mode's table as published, read as any table is.
+/// The table of a mode as published, read like any table.
 ///
-/// * `pieces` — rows are put on the straight line between two, so that there are so many pieces
+/// * `pieces` — number of linear segments between two rows, whose ends become additional rows
 fn published(mode: &str, pieces: usize) -> CurveFile {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curve.csv");
@@ -64,7 +64,7 @@ fn curves(compression: Compression, pieces: usize) -> Curves {
 fn the_table_of_forces_becomes_the_published_stresses() {
     let source = data("gnatv_wool/raw_force_elongation_recovered.csv");
     let all = rows("gnatv_wool/raw_force_elongation_recovered.csv");
-    // The source's shear table has 0.1 N/m of tension across the bars taken off.
+    // The shear table of the source is reduced by a tension of 0.1 N/m across the bars.
     for (mode, width, measure) in [
         ("weft", 0.2, Measure::Green),
         ("warp", 0.05, Measure::Green),
@@ -97,7 +97,7 @@ fn the_table_of_forces_becomes_the_published_stresses() {
     }
 }
 
-/// The elongation λ − 1 of a strip under a force per width: the clip's place at which the clip pulls so much.
+/// Elongation λ − 1 of a strip under a force per width: the clip position at which the clip exerts that force.
 fn elongation(curves: &Curves, axis: usize, [length, width]: [f64; 2], per_width: f64, guess: f64) -> f64 {
     let sides = if axis == 0 { [length, width] } else { [width, length] };
     let counts = if axis == 0 { [9, 4] } else { [4, 9] };
@@ -123,7 +123,7 @@ fn elongation(curves: &Curves, axis: usize, [length, width]: [f64; 2], per_width
         assert!(found.converged(), "{found:?}");
         solver.clip_forces()[1][axis] / width
     };
-    // Regula falsi with halving (Illinois): the force grows with the elongation.
+    // Regula falsi with halving (Illinois): the force increases with the elongation.
     let (mut low, mut high) = ([0.0, -per_width], [1.5 * guess + 1e-6, 0.0]);
     high[1] = pull(high[0]) - per_width;
     for _ in 0..60 {
@@ -148,7 +148,7 @@ fn a_strip_has_the_elongation_of_its_table() {
     for (mode, width, allowed) in [("weft", 0.2, 1e-3), ("warp", 0.05, 1e-3), ("warp", 0.2, 0.03)] {
         let (mut worst, mut count) = ([0.0f64; 2], 0);
         for row in rows("gnatv_wool/uniaxial_expected.csv") {
-            // Without a figure where a force is beyond the last row of the table, or there is none.
+            // Rows without a value have a force beyond the last row of the table, or zero force.
             if row[0] != mode || number(&row[1]) != width || row[6] == "nan" || number(&row[4]) == 0.0 {
                 continue;
             }
@@ -171,8 +171,8 @@ fn a_strip_has_the_elongation_of_its_table() {
 #[test]
 fn a_hanging_strip_drops_by_its_weight() {
     const ELEMENTS: usize = 48;
-    // The reference goes straight from row to row. The spline through the rows alone is another curve: of weft at 10 m its own
-    // exact drop, an integral, is 1.21 % off.
+    // The reference interpolates linearly between rows. The spline through the rows alone is a different curve: for
+    // weft at 10 m its own exact drop, an integral, is 1.21 % off.
     for (pieces, compression, allowed) in
         [(4, Compression::None, 0.01), (4, Compression::ZeroStrain, 0.01), (1, Compression::None, 0.0125)]
     {
@@ -194,7 +194,7 @@ fn a_hanging_strip_drops_by_its_weight() {
                 .filter(|&node| sample.mesh.positions[node][axis] > height * (1.0 - 1e-9))
                 .collect::<Vec<_>>();
             let cloth = sample.cloth().unwrap();
-            // Tension only, a strip at rest has no stiffness across.
+            // Without compression stiffness, a strip at rest has no stiffness across.
             sample.start.iter_mut().skip(axis).step_by(3).for_each(|x| *x *= 1.0 + expected / height);
             let settings = Settings { tolerance: Tolerance::Relative(1e-8), ..Settings::default() };
             let found = Solver::new(&cloth).solve(&sample.curves, &mut sample.start, &settings);

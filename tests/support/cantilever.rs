@@ -1,4 +1,4 @@
-//! A bending test that no cloth code made: a square pushed off a table, of which every frame is a heavy elastica.
+//! A bending test computed without cloth code: a square pushed off a table, with a heavy elastica in every frame.
 
 use crate::elastica::Elastica;
 use cloth_data::frame::{Fabric, Frame, Kind, MeasurementSet, Noise, Sequence, Table};
@@ -14,10 +14,10 @@ pub const SIDE: f64 = 0.1;
 /// Gravity, m/s².
 pub const GRAVITY: f64 = 9.81;
 
-/// Standard deviation of each coordinate of a vertex, where there is noise, m.
+/// Standard deviation of each vertex coordinate in noisy sets, m.
 pub const POSITION_NOISE: f64 = 7.5e-5;
 
-/// A 100 mm square that is pushed off a table's edge along x; the edge runs along y through the origin.
+/// A 100 mm square pushed off a table edge along x; the edge runs along y through the origin.
 ///
 /// ```text
 ///   z │  rest       frames
@@ -26,20 +26,20 @@ pub const POSITION_NOISE: f64 = 7.5e-5;
 ///     └──────────────────  ▒ 0   x
 /// ```
 ///
-/// What lies on the table is flat; what is beyond the edge is clamped level there and bends under its own weight, alike
-/// across. Frame 0 lies flat on the table up to the edge.
+/// The part on the table is flat. The part beyond the edge is clamped level there and bends under its own weight,
+/// uniformly across. Frame 0 lies flat on the table up to the edge.
 pub struct Cantilever<'a> {
-    /// [`Kind::BendWeft`], [`Kind::BendWarp`] or [`Kind::BendBias`]: what runs along x.
+    /// [`Kind::BendWeft`], [`Kind::BendWarp`] or [`Kind::BendBias`]: the direction along x.
     pub kind: Kind,
     /// Mass per area, kg/m².
     pub areal_density: f64,
-    /// Moment per width, N, over curvature, 1/m; odd and rising.
+    /// Moment per width, N, over curvature, 1/m; odd and increasing.
     pub moment: &'a dyn Fn(f64) -> f64,
-    /// Of the frames after the first, m.
+    /// Overhangs of the frames after the first, m.
     pub overhangs: &'a [f64],
     /// Columns and rows of the measured mesh.
     pub measured: [usize; 2],
-    /// Seed of [`POSITION_NOISE`], which is told to the fit as well; `None` = exact.
+    /// Seed of [`POSITION_NOISE`], which is also declared to the fit; `None` = exact.
     pub noise: Option<u64>,
 }
 
@@ -47,7 +47,7 @@ impl Cantilever<'_> {
     /// The measurement set.
     ///
     /// # Panics
-    /// If the kind is none of bending, or an overhang is none of the specimen.
+    /// If the kind is not a bending test, or an overhang exceeds the specimen.
     pub fn measure(&self) -> MeasurementSet {
         let fabric = Fabric {
             name: "heavy elastica".into(),
@@ -64,7 +64,7 @@ impl Cantilever<'_> {
     /// The sequence alone, named after its kind.
     ///
     /// # Panics
-    /// As [`measure`](Self::measure) does.
+    /// As [`measure`](Self::measure).
     pub fn sequence(&self) -> Sequence {
         let [columns, rows] = self.measured;
         let grid = Grid { columns, rows, width: SIDE, height: SIDE, diagonals: Diagonals::Alternating };
@@ -102,7 +102,7 @@ impl Cantilever<'_> {
         }
     }
 
-    /// Where every vertex is, given its place on the flat square.
+    /// Position of every vertex, from its place on the flat square.
     fn shape(&self, flat: &[Vector2<f64>], overhang: f64, random: &mut Option<StdRng>) -> Vec<Vector3<f64>> {
         assert!((0.0..=SIDE).contains(&overhang), "an overhang of {overhang} m");
         let hanging =
@@ -126,7 +126,7 @@ impl Cantilever<'_> {
     }
 }
 
-/// Overhangs whose edge lies between two rows of a 25×25 grid, so many rows and 0.4 of a cell, m.
+/// Overhangs with the edge between two rows of a 25×25 grid: the given number of rows and 0.4 of a cell, m.
 pub fn between_rows(rows: impl IntoIterator<Item = usize>) -> Vec<f64> {
     rows.into_iter().map(|row| (row as f64 + 0.4) * SIDE / 24.0).collect()
 }
@@ -189,7 +189,7 @@ mod tests {
         let overhangs = between_rows([9, 21]);
         for kind in [Kind::BendWeft, Kind::BendWarp, Kind::BendBias] {
             let sequence = cantilever(kind, &overhangs, None).sequence();
-            // Every second measured vertex is a node outwards.
+            // In the outward direction every second measured vertex is a node.
             let specimen = Specimen::new(&sequence, Some([41, 41]), Diagonals::Alternating).unwrap();
             for (frame, overhang) in sequence.frames[1..].iter().zip(&overhangs) {
                 let positions = frame.positions.as_ref().unwrap();

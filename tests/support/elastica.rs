@@ -1,4 +1,4 @@
-//! The heavy elastica: a sheet clamped level at a table's edge that bends under its own weight, by no cloth code.
+//! The heavy elastica without cloth code: a sheet clamped level at a table edge bends under its own weight.
 //!
 //! ```text
 //!   ▒▒▒▒▒▒▒ s = 0                      dψ/dt = κ(M)         t = L − s, from the tip inwards
@@ -7,32 +7,33 @@
 //!                ╲ s = L   M = 0       clamped level: ψ(t = L) = π/2
 //! ```
 //!
-//! M(κ) is any odd, rising law. The angle at the tip is what shooting finds: ψ(L) rises with it, so there is one. Starting
-//! there, and measuring from the way down, keeps all digits where the end hangs straight.
+//! M(κ) is any odd, increasing law. Shooting solves for the angle at the tip; ψ(L) increases with it, so the solution
+//! is unique. Starting at the tip and measuring from the downward direction preserves all digits where the end hangs
+//! straight.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Runge–Kutta steps over the length: 1e-8 of the deflection at Γ = 1000, less below.
+/// Runge–Kutta steps over the length: error of 1e-8 of the deflection at Γ = 1000, smaller below.
 const STEPS: usize = 1000;
 
 /// A point of the sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// How far beyond the edge, m.
+    /// Distance beyond the edge, m.
     pub outward: f64,
-    /// How far below the table, m.
+    /// Distance below the table, m.
     pub below: f64,
-    /// Slope downwards from the level, rad.
+    /// Downward slope from the horizontal, rad.
     pub slope: f64,
     /// Curvature, 1/m.
     pub curvature: f64,
 }
 
-/// The shape of a sheet beyond the edge.
+/// Shape of a sheet beyond the edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Elastica {
     length: f64,
-    /// At equal distances along the sheet, the edge first.
+    /// Points at equal distances along the sheet, the edge first.
     places: Vec<Place>,
 }
 
@@ -44,10 +45,10 @@ impl Elastica {
     /// * `moment` — per width, N, over curvature, 1/m
     ///
     /// # Panics
-    /// If the law does not rise to the moments that occur.
+    /// If the law does not reach the moments that occur.
     pub fn solve(length: f64, weight: f64, moment: &dyn Fn(f64) -> f64) -> Self {
         let sheet = Sheet { step: length / STEPS as f64, weight, moment };
-        // The logarithm, for a long end hangs straight down but for a tiny angle.
+        // In logarithms, since a long end hangs straight down up to a tiny angle.
         let overshoot = |logarithm: f64| sheet.shoot(logarithm.exp(), &mut |_| {}) - FRAC_PI_2;
         let tip = root(&overshoot, -600.0, FRAC_PI_2.ln()).exp();
         let mut states = Vec::with_capacity(STEPS + 1);
@@ -65,7 +66,7 @@ impl Elastica {
         Self { length, places: states.iter().rev().map(|&state| place(state)).collect() }
     }
 
-    /// The place at a distance from the edge along the sheet, m.
+    /// The point at distance `s` from the edge along the sheet, m.
     pub fn at(&self, s: f64) -> Place {
         let position = (s / self.length).clamp(0.0, 1.0) * STEPS as f64;
         let index = (position as usize).min(STEPS - 1);
@@ -86,13 +87,13 @@ impl Elastica {
         self.places[STEPS]
     }
 
-    /// How far the sheet was shot past level, or short of it, rad: the boundary condition that was not imposed.
+    /// Deviation from level at the edge, rad: the residual of the boundary condition.
     pub fn defect(&self) -> f64 {
         self.places[0].slope
     }
 }
 
-/// Angle from the way down, moment, and the way from the tip: inwards and upwards.
+/// Angle from the downward direction, moment, and the distance from the tip inwards and upwards.
 type State = [f64; 4];
 
 struct Sheet<'a> {
@@ -102,8 +103,8 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Integrates from the tip, tells every state and gives the angle at the edge; stops where the sheet turns upwards by
-    /// more than rounding, from which more of it would only turn further.
+    /// Integrates from the tip, reports every state and returns the angle at the edge. Stops when the sheet turns
+    /// upwards by more than rounding, from where it only turns further.
     fn shoot(&self, tip: f64, told: &mut dyn FnMut(State)) -> f64 {
         let mut state = [tip, 0.0, 0.0, 0.0];
         told(state);
@@ -132,7 +133,7 @@ impl Sheet<'_> {
         [self.curvature(moment), self.weight * t * sine, sine, cosine]
     }
 
-    /// The inverse of the law.
+    /// Inverse of the law.
     fn curvature(&self, moment: f64) -> f64 {
         if moment == 0.0 {
             return 0.0;
@@ -147,13 +148,13 @@ impl Sheet<'_> {
     }
 }
 
-/// Cubic with given ends and slopes there.
+/// Cubic with the given end values and slopes.
 fn hermite(t: f64, [a, b]: [f64; 2], [slope_a, slope_b]: [f64; 2]) -> f64 {
     let u = 1.0 - t;
     u * u * (1.0 + 2.0 * t) * a + t * t * (1.0 + 2.0 * u) * b + t * u * (u * slope_a - t * slope_b)
 }
 
-/// Where a function that rises from below zero to above it is zero: Ridders' method, to rounding.
+/// Root of an increasing function by Ridders' method, to rounding.
 fn root(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut f_low, mut f_high) = (f(low), f(high));
     assert!(f_low <= 0.0 && f_high >= 0.0, "{f_low} at {low}, {f_high} at {high}: no sign change");
@@ -164,7 +165,7 @@ fn root(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
         if scale == 0.0 || high - low <= 4.0 * f64::EPSILON * middle.abs() {
             break;
         }
-        // Low and high have these signs, so the step goes up where the middle is still below.
+        // Low and high have these signs, so the step goes up where the middle is still negative.
         let better = (middle - (middle - low) * f_middle / scale).clamp(low, high);
         let f_better = f(better);
         for (x, fx) in [(middle, f_middle), (better, f_better)] {
@@ -183,7 +184,7 @@ fn root(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A linear law with so much weight, for length 1: Γ = ρ g L³/D.
+    /// A linear law with this weight, for length 1: Γ = ρ g L³/D.
     fn linear(gamma: f64) -> Elastica {
         Elastica::solve(1.0, gamma, &|curvature| curvature)
     }
@@ -203,7 +204,7 @@ mod tests {
 
     #[test]
     fn the_chord_falls_by_41_5_degrees_where_peirce_says() {
-        // Peirce: D = ρ g L³/8 when the chord falls by 41.5°; the exact curve has it at Γ = 8.0042.
+        // Peirce: D = ρ g L³/8 when the chord falls by 41.5°; the exact curve has this angle at Γ = 8.0042.
         let tip = linear(8.0042).tip();
         let angle = tip.below.atan2(tip.outward).to_degrees();
         assert!((angle - 41.5).abs() < 1e-4, "{angle}");
@@ -242,7 +243,7 @@ mod tests {
     #[test]
     fn a_long_sheet_hangs_straight() {
         let tip = linear(1e4).tip();
-        // Off the way down by e^-65 or so.
+        // Off the downward direction by about e^-65.
         assert!((tip.slope - FRAC_PI_2).abs() < 1e-15 && tip.curvature.abs() < 1e-12);
     }
 }

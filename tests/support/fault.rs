@@ -1,4 +1,5 @@
-//! Faults of the fields of a measured set, drawn from a seed: signs flipped, axes exchanged, values zeroed and scaled.
+//! Faults in the fields of a measurement set, drawn from a seed: flipped signs, swapped axes, zeroed and scaled
+//! values.
 
 use cloth_data::frame::{Frame, MeasurementSet, Sequence};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -6,7 +7,7 @@ use rand::seq::{IndexedRandom, IteratorRandom};
 use rand::{Rng, rngs::StdRng};
 use std::fmt;
 
-/// A field of the files of a set.
+/// A field in the files of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Field {
     /// `areal_density_kg_m2` of fabric.toml.
@@ -40,7 +41,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// All of them.
+    /// All fields.
     pub const ALL: [Self; 14] = [
         Self::Density,
         Self::Size,
@@ -58,7 +59,7 @@ impl Field {
         Self::Positions,
     ];
 
-    /// True if a sequence has it.
+    /// True if a sequence has the field.
     fn is_in(self, sequence: &Sequence) -> bool {
         match self {
             Self::EdgePoint | Self::EdgeDirection | Self::Outward => sequence.table.is_some(),
@@ -67,12 +68,12 @@ impl Field {
         }
     }
 
-    /// True if it has a value in every frame.
+    /// True if the field has a value per frame.
     fn is_of_frames(self) -> bool {
         matches!(self, Self::Translations | Self::Rotations | Self::Forces | Self::Positions)
     }
 
-    /// True if it is a number and no vector.
+    /// True if the field is a scalar.
     fn is_scalar(self) -> bool {
         matches!(self, Self::Density | Self::Size | Self::Noise | Self::Masses)
     }
@@ -81,21 +82,21 @@ impl Field {
 /// Change of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Change {
-    /// The sign of one axis, or of a number.
+    /// Flips the sign of one axis, or of a scalar.
     Flip(usize),
-    /// The sign of all axes.
+    /// Flips the sign of all axes.
     FlipAll,
-    /// Two axes exchanged.
+    /// Swaps two axes.
     Swap(usize, usize),
-    /// One axis, or a number.
+    /// Zeroes one axis, or a scalar.
     Zero(usize),
-    /// All axes.
+    /// Zeroes all axes.
     ZeroAll,
-    /// All axes by a factor.
+    /// Scales all axes.
     Scale(f64),
 }
 
-/// Factors of units mistaken and digits slipped; a calibration may be off by any.
+/// Factors of wrong units and slipped digits; a calibration error may have any factor.
 const FACTORS: [f64; 11] = [1e-6, 1e-3, 1e-2, 0.1, 1.0 / 9.81, 0.5, 2.0, 9.81, 10.0, 100.0, 1000.0];
 
 impl Change {
@@ -134,7 +135,7 @@ impl Change {
     }
 }
 
-/// Its kind, without axis and figure, as a table counts it.
+/// The kind of change, without axis and factor, as counted in a table.
 impl fmt::Display for Change {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
@@ -150,24 +151,24 @@ impl fmt::Display for Change {
     }
 }
 
-/// One change of one field.
+/// A change of one field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// The field.
     pub field: Field,
-    /// What became of it.
+    /// The change.
     pub change: Change,
-    /// In this sequence, or in all.
+    /// Affected sequence; `None` = all.
     pub sequence: Option<String>,
-    /// In this frame, or in all.
+    /// Affected frame; `None` = all.
     pub frame: Option<usize>,
 }
 
 impl Fault {
-    /// Draws a fault that a set may have.
+    /// Draws a fault applicable to a set.
     ///
     /// # Panics
-    /// If the set has no sequence.
+    /// If the set has no sequences.
     pub fn draw(random: &mut StdRng, set: &MeasurementSet) -> Self {
         let has = |field: &Field| set.sequences.iter().any(|sequence| field.is_in(sequence));
         let field = Field::ALL.into_iter().filter(has).choose(random).expect("a sequence");
@@ -182,7 +183,7 @@ impl Fault {
         }
     }
 
-    /// Makes the change.
+    /// Applies the change.
     pub fn apply(&self, set: &mut MeasurementSet) {
         let change = self.change;
         match self.field {

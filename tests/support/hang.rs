@@ -1,4 +1,4 @@
-//! The wool sheet of 10 m × 10 m that Strohkorb 2019 hangs from two corners.
+//! The wool sheet of 10 m × 10 m hung from two corners by Strohkorb 2019.
 
 use crate::{data, rows};
 use cloth_data::io::{YarnAxes, read_mesh};
@@ -8,9 +8,9 @@ use cloth_sim::material::{Component, Compression, Curves, Model};
 use cloth_sim::samples::Sample;
 use nalgebra::Vector3;
 
-/// The sheet at rest, y up; weft and warp bear tension only, and nothing bends.
+/// The sheet at rest, y up; weft and warp carry tension only, and bending has no stiffness.
 ///
-/// * `planar` — all motion in planes z = const
+/// * `planar` — restricts motion to planes z = const
 ///
 /// # Panics
 /// If the reference data cannot be read.
@@ -23,7 +23,7 @@ pub fn gnatv_hang(planar: bool) -> Sample {
     Sample { areal_density: 0.15, gravity, held, planar, ..at_rest }
 }
 
-/// The wool's published points of stress over Green strain; between them a spline of the stiffness.
+/// The published stress points of the wool over Green strain, with a spline of the stiffness between them.
 fn wool() -> Curves {
     let table = rows("gnatv_wool/stress_strain_as_published.csv");
     let names =

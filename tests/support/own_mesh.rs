@@ -1,4 +1,4 @@
-//! Tests as the fit itself simulates them: equilibria under known curves, and what they would be measured as.
+//! Tests simulated on the mesh of the fit: equilibria under known curves, and the resulting measurements.
 //!
 //! ```text
 //! nominal set ──▶ the fit's replicas ──▶ equilibria ──▶ the same set with their shapes and forces (+ noise)
@@ -15,7 +15,7 @@ use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 use std::sync::Arc;
 
-/// The stage that fits on a test.
+/// The stage that fits a test.
 fn plan(kind: Kind) -> Plan {
     match kind {
         Kind::StretchWeft | Kind::StretchWarp => {
@@ -26,7 +26,7 @@ fn plan(kind: Kind) -> Plan {
     }
 }
 
-/// Equilibria of a sequence under known curves, as the stage that fits on it simulates them: frame by frame with the forces
+/// Equilibria of a sequence under known curves, simulated as in the stage that fits it: per frame, with the forces
 /// along the measured components, N.
 ///
 /// # Panics
@@ -57,8 +57,8 @@ pub fn equilibria<T>(
     simulation.settled().zip(&forces).map(|(settled, forces)| read(settled, forces)).collect()
 }
 
-/// A set whose shapes and forces are those of the fit's own simulation under known curves. Shapes need a measured mesh with
-/// the simulation's nodes.
+/// A set with the shapes and forces of the fit's own simulation under known curves. Shapes require a measured mesh
+/// with the nodes of the simulation.
 pub fn simulated(nominal: &MeasurementSet, curves: &Curves, settings: &Settings) -> MeasurementSet {
     let mut set = nominal.clone();
     for (sequence, exact) in nominal.sequences.iter().zip(&mut set.sequences) {
@@ -88,10 +88,10 @@ pub fn simulated(nominal: &MeasurementSet, curves: &Curves, settings: &Settings)
     set
 }
 
-/// Adds noise to shapes and forces, and tells the fit of it.
+/// Adds noise to shapes and forces, and declares it to the fit.
 ///
 /// * `position` — standard deviation of a vertex's coordinates, m
-/// * `force` — of a force along the load cell, or of each of its components, N; by the test
+/// * `force` — of a force along the load cell, or of each of its components, N; per test
 pub fn with_noise(
     exact: &MeasurementSet,
     seed: u64,

@@ -1,4 +1,4 @@
-//! A shear test that no cloth code made: a square in a frame of four bars, sheared alike everywhere.
+//! A shear test computed without cloth code: a square in a frame of four bars, in homogeneous shear.
 
 use crate::weightless;
 use cloth_data::frame::{Clip, Cord, Frame, Kind, MeasurementSet, Noise, Sequence};
@@ -11,10 +11,10 @@ use std::f64::consts::FRAC_PI_4;
 /// Side of the specimen, m.
 pub const SIDE: f64 = 0.1;
 
-/// Standard deviation of each component of a clip's force, where there is noise, N.
+/// Standard deviation of each component of a clip force in noisy sets, N.
 pub const FORCE_NOISE: f64 = 3e-3;
 
-/// A 100 mm square whose four sides are held by bars, hinged where they meet; its middle stays where it is.
+/// A 100 mm square held by bars on all four sides, hinged at the corners; its centre is fixed.
 ///
 /// ```text
 ///      left ╱────────╱ ─▶ high          w_u = (cos γ/2, sin γ/2)   along low and high
@@ -22,30 +22,30 @@ pub const FORCE_NOISE: f64 = 3e-3;
 ///   low ╱────────╱                      ε = w_u·w_v = sin γ
 /// ```
 ///
-/// Energy per area W(ε), so the first Piola–Kirchhoff stress has the columns ∂W/∂w_u = σ w_v and ∂W/∂w_v = σ w_u. On a
-/// side with material normal n the bar must pull with P n per rest length to hold the cloth: σ w_v on the right, σ w_u on
-/// top, the opposite on the left and below — along the bar everywhere. A clip is in balance, so that is what its cords
-/// exert on it in all:
+/// With energy per area W(ε), the first Piola–Kirchhoff stress has the columns ∂W/∂w_u = σ w_v and ∂W/∂w_v = σ w_u.
+/// On a side with material normal n the bar must pull with P n per rest length to hold the cloth: σ w_v on the right,
+/// σ w_u at the top, the opposite on the left and at the bottom; along the bar on every side. A clip is in
+/// equilibrium, so this is the total force of its cords:
 ///
 /// ```text
 /// F_right = σ(sin γ) a w_v = −F_left        F_high = σ(sin γ) a w_u = −F_low
 /// ```
 ///
-/// It is the same for StVK and soft constraints, whose shear strain is w_u·w_v. Nothing is stretched: sides keep their
-/// length.
+/// The result is the same for StVK and soft constraints, whose shear strain is w_u·w_v. Nothing is stretched: the
+/// sides keep their length.
 pub struct PictureFrame {
     /// Shear angle, rad, and force along each bar, N, of the frames after the first, which is at rest.
     pub pulls: Vec<[f64; 2]>,
     /// Columns and rows of the measured mesh.
     pub measured: [usize; 2],
-    /// Exact positions of the vertices come with the frames; the first is a micron high, since heights that are all the same
-    /// pass for not measured.
+    /// Adds exact vertex positions to the frames. The first vertex is a micron high, since constant heights count as
+    /// not measured.
     pub shapes: bool,
-    /// Seed of [`FORCE_NOISE`], which is told to the fit as well; `None` = exact.
+    /// Seed of [`FORCE_NOISE`], which is also declared to the fit; `None` = exact.
     pub noise: Option<u64>,
 }
 
-/// The bars in the order of the clips.
+/// The bars, in clip order.
 const BARS: [&str; 4] = ["low", "high", "left", "right"];
 
 impl PictureFrame {
@@ -57,7 +57,7 @@ impl PictureFrame {
         Self::of_pulls(angles.iter().map(|&angle| [angle, law(angle.sin()) * SIDE]).collect())
     }
 
-    /// The same of shear angles, rad, and forces along each bar, N.
+    /// As [`PictureFrame::of_law`], from shear angles, rad, and forces along each bar, N.
     pub fn of_pulls(pulls: Vec<[f64; 2]>) -> Self {
         Self { pulls, measured: [2, 2], shapes: false, noise: None }
     }
@@ -128,7 +128,7 @@ fn yarns(angle: f64) -> [Vector2<f64>; 2] {
     [Vector2::new(cosine, sine), Vector2::new(sine, cosine)]
 }
 
-/// Where a point of the square is at a shear angle.
+/// Position of a point of the square at a shear angle.
 fn placed(material: &Vector2<f64>, angle: f64) -> Vector2<f64> {
     let middle = Vector2::repeat(SIDE / 2.0);
     middle + Matrix2::from_columns(&yarns(angle)) * (material - middle)
@@ -146,21 +146,21 @@ fn poses(angle: f64) -> [Isometry3<f64>; 4] {
     })
 }
 
-/// Force along each bar, N, when two opposite corners of the frame are pulled apart with a force, N.
+/// Force along each bar, N, when two opposite corners of the frame are pulled apart by a given force, N.
 ///
-/// The diagonal is d = 2a cos(π/4 − γ/2), and what pulls it does the work that the cloth stores, a² W(sin γ):
+/// The diagonal is d = 2a cos(π/4 − γ/2). The work of its pull equals the stored energy a² W(sin γ):
 ///
 /// ```text
 /// F dd/dγ = a² σ cos γ        dd/dγ = a sin(π/4 − γ/2),  cos γ = 2 sin(π/4 − γ/2) cos(π/4 − γ/2)
 /// F = 2 a σ cos(π/4 − γ/2)    per bar  σ a = F / (2 cos(π/4 − γ/2))
 /// ```
 ///
-/// That is also the pull resolved along the two bars that meet at the corner, each at π/4 − γ/2 to the diagonal.
+/// This is also the pull resolved along the two bars at the corner, each at π/4 − γ/2 to the diagonal.
 pub fn force_along_bars(diagonal_force: f64, angle: f64) -> f64 {
     diagonal_force / (2.0 * (FRAC_PI_4 - angle / 2.0).cos())
 }
 
-/// The pulled diagonal, m.
+/// Length of the pulled diagonal, m.
 pub fn diagonal(angle: f64) -> f64 {
     2.0 * SIDE * (FRAC_PI_4 - angle / 2.0).cos()
 }
@@ -258,7 +258,7 @@ mod tests {
             let force = |vertex: usize| Vector2::new(gradient[3 * vertex], gradient[3 * vertex + 1]);
             let axes = Matrix2::from_columns(&yarns(0.6));
             for cord in &frame.cords {
-                // A corner belongs to two bars: each takes the part along itself.
+                // A corner belongs to two bars: each takes the component along itself.
                 let own = usize::from(cord.clip > 1);
                 let part = |&vertex: &usize| {
                     axes.column(own) * axes.try_inverse().unwrap().row(own).dot(&force(vertex).transpose())

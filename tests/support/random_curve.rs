@@ -1,12 +1,12 @@
-//! Curves as anyone might write them: control values over three decades.
+//! Random curves: control values over three decades.
 
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
 /// A curve of two to eight control points at random strains up to 0.05 … 0.5, each stiffness between 1 and 1000 N/m,
-/// all decades alike. Most are not stable.
+/// log-uniform. Most are not stable.
 ///
-/// * `seed` — the same curve for the same number
+/// * `seed` — determines the curve
 ///
 /// # Panics
 /// Never: the strains ascend.

@@ -1,4 +1,4 @@
-//! A strip of cloth with its columns of nodes at given places, for beams, chains and hanging strips.
+//! A strip of cloth with node columns at given positions, for beams, chains and hanging strips.
 
 use cloth_sim::cloth::Cloth;
 use cloth_sim::material::Component;
@@ -15,12 +15,12 @@ use nalgebra::{Vector2, Vector3};
 ///           columns
 /// ```
 ///
-/// * `columns` — where the columns of nodes are along x, ascending, m
+/// * `columns` — positions of the node columns along x, ascending, m
 /// * `width` — m
-/// * `rows` — of nodes, at least 2
+/// * `rows` — number of node rows, at least 2
 ///
 /// # Panics
-/// If that makes no mesh.
+/// If the arguments do not form a mesh.
 pub fn strip(columns: &[f64], width: f64, rows: usize) -> Mesh {
     let places = columns
         .iter()
@@ -42,8 +42,8 @@ pub fn strip(columns: &[f64], width: f64, rows: usize) -> Mesh {
     Mesh::new(positions, material, triangles).expect("a proper strip")
 }
 
-/// Columns of a beam that is clamped at 0: equal cells up to `length`, and behind the clamp a cell so thin that the hinges
-/// at the clamp stand for half a cell, as they should.
+/// Columns of a beam clamped at 0: equal cells up to `length`, and behind the clamp a cell so thin that the hinges at
+/// the clamp represent half a cell.
 ///
 /// ```text
 ///  D/k of a hinge is the mean of its two cells' widths: (0 + Δ)/2
@@ -53,12 +53,12 @@ pub fn beam(length: f64, cells: usize) -> Vec<f64> {
     std::iter::once(-1e-3 * cell).chain((0..=cells).map(|i| cell * i as f64)).collect()
 }
 
-/// The cloth of a strip whose columns move as one: it rolls up, and does not twist.
+/// The cloth of a strip with rigid node columns: it rolls up without twisting.
 ///
-/// A free strip of hinges gives way by folding its diagonals in turn, and is about a fifth softer than the cylinder.
+/// A free strip of hinges folds its diagonals in turn and is about a fifth softer than the cylinder.
 ///
 /// # Panics
-/// If the sample makes no problem.
+/// If the sample is not a valid problem.
 pub fn rolled(sample: &Sample, rows: usize) -> Cloth {
     let held = |node: &usize| sample.held.iter().any(|held| held.node == *node);
     let columns = (0..sample.mesh.len() / rows).map(|column| (column * rows..(column + 1) * rows).collect());

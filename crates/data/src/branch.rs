@@ -1,16 +1,17 @@
-//! The branches of a cyclic test: where the moving clamp turns back.
+//! Branches of a cyclic test: split where the moving clamp reverses.
 
 use crate::frame::Phase;
 use std::collections::BTreeMap;
 
-/// The clamp has turned back once it has moved back by this share of the extension's range; less is noise.
+/// Share of the extension range by which the clamp must move back to count as a reversal; smaller reversals are
+/// noise.
 const HYSTERESIS: f64 = 0.02;
 
-/// The branch of every row, from 0: a turning point is the last row of the branch that led to it.
+/// Branch of every row, counted from 0. A turning point is the last row of the branch that leads to it.
 pub(crate) fn numbered(extension: &[f64]) -> Vec<usize> {
     let threshold = threshold(extension.iter().copied());
     let mut turns = Vec::new();
-    // Where the extension was lowest and highest since the last turn, and whether it rises; unknown at first.
+    // Rows of the lowest and highest extension since the last reversal, and the direction, unknown at first.
     let (mut low, mut high, mut rises) = (0, 0, None);
     for (row, &value) in extension.iter().enumerate() {
         // A plateau belongs to the branch that led to it.
@@ -38,8 +39,8 @@ pub(crate) fn numbered(extension: &[f64]) -> Vec<usize> {
     (0..extension.len()).map(|row| turns.partition_point(|&turn| turn < row)).collect()
 }
 
-/// The phase of every branch: loading or unloading if it ends so much above or below its beginning that the clamp
-/// must have moved, else hold.
+/// Phase of every branch: loading or unloading if its end lies so far above or below its start that the clamp must
+/// have moved, else hold.
 pub(super) fn phases(rows: impl Iterator<Item = (usize, f64)> + Clone) -> BTreeMap<usize, Phase> {
     let threshold = threshold(rows.clone().map(|(_, extension)| extension));
     let mut ends: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
@@ -75,7 +76,7 @@ mod tests {
 
     #[test]
     fn noise_does_not_split_a_branch() {
-        // Up to 1, back to 0 and up to 1, in steps of 0.005 with an error of ±0.008, and slack at the start.
+        // Up to 1, back to 0 and up to 1 in steps of 0.005, with an error of ±0.008 and slack at the start.
         let error = |row: usize| 0.008 * if row.is_multiple_of(2) { 1.0 } else { -1.0 };
         let path = |row: usize| [row, 400 - row.min(400), row.max(400) - 400][row / 200] as f64 * 0.005;
         let extension: Vec<_> = (0..600).map(|row| path(row) + error(row)).collect();

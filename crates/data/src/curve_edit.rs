@@ -1,48 +1,48 @@
-//! Curves made wider, stronger or longer by hand.
+//! Manual edits of a curve: scaled in strain and stress, or extended.
 //!
 //! ```text
 //! scaled      σ̂(f ε) = g σ(ε)                                   control points (f εᵢ, kᵢ g/f)
 //! extended    σ̂ = σ up to ε_a,  σ̂ = σ(ε_a) + s (ε − ε_a) on to ε_b
 //! ```
 //!
-//! Source: the edits of Strohkorb 2019, §4.2: larger strain steps, a greater last stress, an added linear trend.
+//! Source: the edits of Strohkorb 2019, §4.2: larger strain steps, a larger final stress, an added linear trend.
 
 use crate::error::{Error, Result};
 use cloth_sim::curve::StiffnessCurve;
 
-/// Points closer than this share of the range are one.
+/// Points closer than this share of the range coincide.
 const SAME: f64 = 1e-9;
-/// No edit makes more control points.
+/// Upper limit on the control points of an edited curve.
 const MOST_POINTS: usize = 10_000;
 
-/// How the stress goes on.
+/// Continuation of the stress beyond the curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trend {
-    /// With the curve's tangent where it is left.
+    /// The tangent of the curve at the junction.
     Tangent,
-    /// With this slope, N/m (bending: N·m).
+    /// A given slope, N/m (bending: N·m).
     Slope(f64),
-    /// To this stress at the end, N/m (bending: N).
+    /// A given stress at the end, N/m (bending: N).
     StressAtEnd(f64),
 }
 
-/// A straight piece of stress at the end of a curve.
+/// A straight segment of stress at the end of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extension {
-    /// Strain from which on stress is straight; what the curve has beyond is dropped. Default: its last control point.
+    /// Strain at which the straight segment starts; the curve beyond it is dropped. Default: the last control point.
     pub from: Option<f64>,
     /// Strain of the new last control point.
     pub to: f64,
-    /// How the stress goes on.
+    /// Slope of the segment.
     pub trend: Trend,
-    /// Control points that are added. Default: at the mean distance that the curve's own have.
+    /// Number of control points to add. Default: spaced by the mean distance of the existing ones.
     pub points: Option<usize>,
 }
 
-/// The curve with all strains and all stresses multiplied.
+/// Multiplies all strains and all stresses of a curve.
 ///
 /// # Errors
-/// A factor that is not above zero and finite; numbers that overflow.
+/// A factor that is not positive and finite; overflow.
 pub fn scaled(curve: &StiffnessCurve, strain: f64, stress: f64) -> Result<StiffnessCurve> {
     for (field, factor) in [("strain", strain), ("stress", stress)] {
         if !(factor > 0.0 && factor.is_finite()) {
@@ -56,20 +56,20 @@ pub fn scaled(curve: &StiffnessCurve, strain: f64, stress: f64) -> Result<Stiffn
     )
 }
 
-/// The largest stress at a control point, without sign.
+/// Largest absolute stress at a control point.
 pub fn largest_stress(curve: &StiffnessCurve) -> f64 {
     let stresses = curve.strains().iter().zip(curve.stiffnesses()).map(|(strain, k)| (strain * k).abs());
     stresses.fold(0.0, f64::max)
 }
 
-/// The curve with a straight piece of stress at its end.
+/// Appends a straight segment of stress to a curve.
 ///
-/// The control points are those of the curve up to half a step before where it is left, one there, and those of the straight
-/// piece. A spline through them is straight to third order in their distance.
+/// Keeps the control points of the curve up to half a step before the junction, then adds one at the junction and
+/// those of the segment. A spline through them is straight to third order in their spacing.
 ///
 /// # Errors
-/// An end that is not above where the piece begins, or that outside the curve; a slope or stress that is not finite; no
-/// point, or more than 10 000.
+/// An end that is not above the start of the segment; a start outside the curve; a slope or stress that is not
+/// finite; no points, or more than 10 000.
 pub fn extended(curve: &StiffnessCurve, extension: &Extension) -> Result<StiffnessCurve> {
     let last = curve.strains()[curve.len() - 1];
     let from = extension.from.unwrap_or(last);
@@ -97,7 +97,7 @@ pub fn extended(curve: &StiffnessCurve, extension: &Extension) -> Result<Stiffne
         return Err(refuse("points", points.to_string(), format!("1 to {MOST_POINTS}")));
     }
     let kept = curve.strains().iter().zip(curve.stiffnesses());
-    // A spline through points that crowd before a bend swings out between them.
+    // A spline through crowded points before a bend overshoots between them.
     let room = 0.5 * length / points as f64;
     let kept = kept.filter(|(knot, _)| **knot == 0.0 || **knot < from - room.max(SAME * last));
     let (mut strains, mut stiffnesses): (Vec<f64>, Vec<f64>) = kept.map(|(&knot, &k)| (knot, k)).unzip();

@@ -1,13 +1,14 @@
-//! A curve as a table: stress against strain, or moment against curvature, to a curve that a simulation takes.
+//! A curve as a table of stress over strain, or moment over curvature, and its conversion to a simulation curve.
 //!
 //! ```text
-//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ            or as a fit names them
+//! stretch, shear    strain, stress_n_per_m           εᵢ = strain            kᵢ = σᵢ/εᵢ     or as a fit names them
 //! bending           curvature_per_m, moment_n        εᵢ = 3 × curvature     kᵢ = Mᵢ/εᵢ      hinges of a regular grid
 //! ```
 //!
-//! Every row with ε > 0 is a control point. The stiffness at zero, which no stress can tell, stands in the column
-//! `stiffness_n_per_m` or `rigidity_n_m`; without it, it is that of the first row above zero, k₀ = k₁: what interpolation on a
-//! straight line from no stress to that row means, and never below zero where a line through two rows would be.
+//! Every row with ε > 0 is a control point. The stiffness at zero cannot be derived from a stress; the column
+//! `stiffness_n_per_m` or `rigidity_n_m` states it. Without that column k₀ = k₁, the value of the first row above
+//! zero. This equals linear interpolation from zero stress to that row, and it stays positive where a line through
+//! two rows would give a negative value.
 
 mod read;
 #[cfg(test)]
@@ -20,13 +21,15 @@ use cloth_sim::strain_measure::StrainMeasure;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// How far rows below zero may be from what the model makes of the rows above, as a share of the largest stress.
+/// Allowed difference between rows below zero and the model's extension of the rows above, as a share of the largest
+/// stress.
 const DISAGREEMENT: f64 = 0.01;
-/// Strains up to this share of the largest are zero: 201 equidistant rows from below zero meet it to rounding only.
+/// Strains up to this share of the largest count as zero: 201 equidistant rows from below zero hit it only to
+/// rounding.
 const ZERO: f64 = 1e-9;
 
-/// What tables may be of, those first whose columns say the most; `None` = stretch or shear, in the strain of the model that
-/// will read it.
+/// Measures a table can have, the most specific column names first; `None` = stretch or shear, in the strain of the
+/// model that reads the table.
 const MEASURES: [Option<StrainMeasure>; 6] = [
     Some(StrainMeasure::Hinge),
     Some(StrainMeasure::Green),
@@ -36,7 +39,7 @@ const MEASURES: [Option<StrainMeasure>; 6] = [
     None,
 ];
 
-/// Strain or curvature, secant stiffness, stress or moment, and the band's sides, as they head a file.
+/// Column names: strain or curvature, secant stiffness, stress or moment, and the two sides of the band.
 pub fn columns(measure: Option<StrainMeasure>) -> [&'static str; 5] {
     const K: &str = "stiffness_n_per_m";
     match measure {
@@ -67,8 +70,8 @@ pub fn columns(measure: Option<StrainMeasure>) -> [&'static str; 5] {
     }
 }
 
-/// Engineering strain and nominal stress of a row of Green strain and PK2 stress, √(1 + 2E) − 1 and S √(1 + 2E); `None` of
-/// other measures, which have no others beside their own, and where no length is left.
+/// Engineering strain √(1 + 2E) − 1 and nominal stress S √(1 + 2E) of a row of Green strain and PK2 stress. `None`
+/// for other measures, which have no second pair of columns, and where the length vanishes.
 pub fn engineering(measure: StrainMeasure, strain: f64, stress: f64) -> Option<[f64; 2]> {
     if measure != StrainMeasure::Green {
         return None;
@@ -77,30 +80,30 @@ pub fn engineering(measure: StrainMeasure, strain: f64, stress: f64) -> Option<[
     Some([extension, stress * (1.0 + 2.0 * strain).sqrt()])
 }
 
-/// Engineering strain and nominal stress, as they head a file.
+/// Column names of engineering strain and nominal stress.
 pub const ENGINEERING: [&str; 2] = ["engineering_strain", "nominal_stress_n_per_m"];
 
-/// A table of a curve, as it stands in a file.
+/// A curve table, as in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveFile {
-    /// Whose strains the rows hold; `None` = of stretch or shear, in the strain of the model that will read it.
+    /// Strain measure of the rows; `None` = stretch or shear, in the strain of the model that reads the table.
     pub measure: Option<StrainMeasure>,
     /// Strains, or curvatures in 1/m; ascending.
     pub strains: Vec<f64>,
-    /// Stresses in N/m, or moments per width in N; a row each.
+    /// Stresses in N/m, or moments per width in N; one per row.
     pub stresses: Vec<f64>,
-    /// Secant stiffnesses in N/m, or flexural rigidities in N·m, where the file has the column.
+    /// Secant stiffnesses in N/m, or flexural rigidities in N·m, if the file has the column.
     pub stiffnesses: Option<Vec<f64>>,
-    /// Lower and upper side of a band on the stress, each where the file has the column; NaN where a row has none.
+    /// Lower and upper side of a band on the stress, each if the file has the column; NaN in rows without a value.
     pub band: [Option<Vec<f64>>; 2],
     path: PathBuf,
     lines: Vec<usize>,
 }
 
 impl CurveFile {
-    /// A table of rows that come from elsewhere, without other columns.
+    /// A table made from rows of another source, without optional columns.
     ///
-    /// * `path`, `lines` — where each row comes from, for messages
+    /// * `path`, `lines` — origin of each row, for messages
     ///
     /// # Errors
     /// No row; strains that do not ascend.
@@ -121,7 +124,7 @@ impl CurveFile {
     fn check_order(&self) -> Result<()> {
         let strains = &self.strains;
         if strains.is_empty() {
-            return Err(self.refuse(None, "row", "nothing below the header", "one row at least"));
+            return Err(self.refuse(None, "row", "nothing below the header", "at least one row"));
         }
         let Some(row) = (1..strains.len()).find(|&row| strains[row] <= strains[row - 1]) else {
             return Ok(());
@@ -132,16 +135,16 @@ impl CurveFile {
         Err(self.refuse(Some(row), columns(self.measure)[0], found, expected))
     }
 
-    /// The curve of a component in a model, with a control point at every row from zero on.
+    /// The curve of a component in a model, with a control point at every row at or above zero.
     ///
-    /// Rows below zero are not control points: how stress is read there is the rule `negative`. They must agree with
-    /// it within 1 % of the table's largest stress (a shear table of both sides must be odd). Where such rows exist and
-    /// none is at zero, a control point is put there.
+    /// Rows below zero are not control points; the rule `negative` determines the stress there. They must agree with
+    /// it within 1 % of the table's largest stress (a two-sided shear table must be odd). If such rows exist but none
+    /// lies at zero, a control point is added there.
     ///
     /// # Errors
-    /// A table of another kind, or of another model's strain; bending of springs, whose tables belong to a grid; no row at zero where the table
-    /// starts above it; a stress at zero; fewer than two rows from zero on; a stiffness column that is not the stress
-    /// over the strain; rows below zero that disagree.
+    /// A table of another kind, or of another model's strain; bending of springs, whose tables belong to a grid; no
+    /// row at zero where the table starts above it; a non-zero stress at zero; fewer than two rows at or above zero;
+    /// a stiffness column that is not the stress over the strain; rows below zero that disagree.
     pub fn curve(
         &self,
         component: Component,
@@ -156,15 +159,15 @@ impl CurveFile {
         let below = self.strains.partition_point(|&strain| strain < -zero);
         let largest = self.largest_stress();
         if self.strains.len() - first < 1 {
-            return Err(self.refuse(None, axis, "no row above zero", "one row above zero at least"));
+            return Err(self.refuse(None, axis, "no row above zero", "at least one row above zero"));
         }
         if first - below > 1 {
-            let found = format!("{}, as good as the row before", self.strains[below + 1]);
+            let found = format!("{}, practically the same as the row before", self.strains[below + 1]);
             return Err(self.refuse(
                 Some(below + 1),
                 axis,
                 found,
-                "rows apart by 1e-9 of the largest at least",
+                "rows at least 1e-9 of the largest strain apart",
             ));
         }
         let at_zero = (below < first).then_some(below);
@@ -175,7 +178,7 @@ impl CurveFile {
                     Some(row),
                     stress,
                     found,
-                    "0 there: what is not strained is free of stress",
+                    "0 there: an unstrained cloth has no stress",
                 ));
             }
             None if below == 0 => {
@@ -198,22 +201,22 @@ impl CurveFile {
         let stiffnesses = std::iter::once(start).chain(secants).map(|k| k / scale).collect();
         let curve = StiffnessCurve::new(strains.collect(), stiffnesses, negative).map_err(|error| {
             let row = match error {
-                // The stiffness at zero that no row states is that of the first row above.
+                // Without a stated row, the stiffness at zero is that of the first row above.
                 cloth_sim::error::Error::Curve { point, .. } => Some(first + point.saturating_sub(1)),
                 _ => None,
             };
-            self.refuse(row, stiffness, error.to_string(), "strains apart and finite stiffnesses")
+            self.refuse(row, stiffness, error.to_string(), "distinct strains and finite stiffnesses")
         })?;
         self.check_below_zero(&curve, below, largest)?;
         Ok(curve)
     }
 
-    /// The same rows and columns with the stresses of another curve; a band keeps its width about the stress.
+    /// The same rows and columns with the stresses of another curve; a band keeps its width around the stress.
     ///
-    /// * `curve` — over the model's strains, as [`CurveFile::curve`] gives it
+    /// * `curve` — over the model's strains, as returned by [`CurveFile::curve`]
     ///
-    /// Without a stiffness column one is added: the stress alone does not tell the stiffness at zero, and the file would
-    /// be read as another curve.
+    /// Adds a stiffness column if there is none: the stress alone does not determine the stiffness at zero, and the
+    /// file would read back as a different curve.
     pub fn with_curve(&self, curve: &StiffnessCurve) -> Self {
         let scale = self.strain_per_unit();
         let stress: Vec<f64> = self.strains.iter().map(|&strain| curve.stress(scale * strain)).collect();
@@ -237,7 +240,7 @@ impl CurveFile {
         }
     }
 
-    /// The same rows with all strains and all stresses multiplied: stiffnesses and bands follow.
+    /// Multiplies all strains and stresses; stiffnesses and bands follow.
     pub fn scaled(&self, strain: f64, stress: f64) -> Self {
         let times = |values: &[f64], factor: f64| values.iter().map(|value| value * factor).collect();
         Self {
@@ -249,8 +252,8 @@ impl CurveFile {
         }
     }
 
-    /// A row for every control point of another curve, below the rows of this one that lie below zero; without a band,
-    /// which is known of this one's rows only.
+    /// One row per control point of another curve, after the rows of this table that lie below zero. The result has
+    /// no band, because a band is known only at the original rows.
     pub fn with_points(&self, curve: &StiffnessCurve) -> Self {
         let scale = self.strain_per_unit();
         let zero = ZERO * self.largest_strain();
@@ -261,12 +264,12 @@ impl CurveFile {
         rows.with_curve(curve)
     }
 
-    /// Strain of the model's elements over what the first column holds: 1, or 3 for curvature.
+    /// Ratio of the element strain to the values of the first column: 1, or 3 for curvature.
     pub fn strain_per_unit(&self) -> f64 {
         self.measure.map_or(1.0, StrainMeasure::strain_per_unit)
     }
 
-    /// The file's text, with the columns that are there; beside Green strain engineering strain and nominal stress.
+    /// CSV text of all columns present; a table of Green strain also gets engineering strain and nominal stress.
     pub fn to_csv(&self) -> String {
         let [axis, stiffness, stress, low, high] = columns(self.measure);
         let [strains, stresses] = self.engineering();
@@ -294,14 +297,14 @@ impl CurveFile {
         text
     }
 
-    /// The columns beside Green strain and its stress.
+    /// The engineering columns of a table of Green strain.
     fn engineering(&self) -> [Option<Vec<f64>>; 2] {
         let rows = self.strains.iter().zip(&self.stresses);
         let rows: Option<Vec<_>> = rows.map(|(&e, &s)| engineering(self.measure?, e, s)).collect();
         [0, 1].map(|column| rows.as_ref().map(|rows| rows.iter().map(|row| row[column]).collect()))
     }
 
-    /// Refuses columns beside Green strain that say something else than it does.
+    /// Rejects engineering columns that contradict the Green strain and its stress.
     fn check_beside(&self, given: [Option<Vec<f64>>; 2]) -> Result<()> {
         for ((given, own), name) in given.iter().zip(self.engineering()).zip(ENGINEERING) {
             let (Some(given), Some(own)) = (given, own) else { continue };
@@ -317,7 +320,7 @@ impl CurveFile {
         Ok(())
     }
 
-    /// A component and a model that have such tables.
+    /// A component and a model whose tables have these columns.
     pub fn typical(&self) -> (Component, Model) {
         match self.measure {
             None | Some(StrainMeasure::Green) => (Component::StretchWeft, Model::Stvk),
@@ -352,21 +355,21 @@ impl CurveFile {
         if !agrees {
             let [axis, _, stress, ..] = columns(Some(wanted));
             let [found, ..] = columns(self.measure);
-            let expected = format!("{axis} and {stress}, as {component} of {model} has");
+            let expected = format!("{axis} and {stress}, the columns of {component} in {model}");
             return Err(self.refuse(None, "header", format!("a column {found}"), expected));
         }
         if wanted == StrainMeasure::RingTwo {
             return Err(self.refuse(
                 None,
                 "model",
-                "moments over curvature for the springs of a grid that the file does not name",
-                "a material.json, whose control points are over the springs' own strain; or another model",
+                "moments over curvature for the springs of an unspecified grid",
+                "a material.json, with control points over the strain of the springs, or another model",
             ));
         }
         Ok(())
     }
 
-    /// The stiffness that a row states, if it is the stress over the strain.
+    /// The stiffness stated in a row, checked against the stress over the strain.
     fn stated(&self, row: usize, stiffness: f64, largest: f64) -> Result<f64> {
         let product = stiffness * self.strains[row];
         if !((product - self.stresses[row]).abs() <= 1e-6 * largest) {
@@ -385,7 +388,7 @@ impl CurveFile {
             if !((self.stresses[row] - expected).abs() <= DISAGREEMENT * largest) {
                 let found = format!("{} at {}", self.stresses[row], self.strains[row]);
                 let rule = match curve.negative() {
-                    NegativeStrain::Odd => "an odd curve, as the rows above zero say",
+                    NegativeStrain::Odd => "an odd curve, given by the rows above zero",
                     NegativeStrain::Linear | NegativeStrain::Green => {
                         "compression with the stiffness at zero"
                     }

@@ -1,63 +1,63 @@
-//! What can be wrong with measurements and settings. A fit that does not converge is no error: see the report.
+//! Errors of measurements and settings. A fit that does not converge is not an error: see the report.
 
 use crate::notice::Notice;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Bad input, misuse, or a file that could not be read or written.
+/// Invalid input, misuse, or a failed file operation.
 #[derive(Debug, Error)]
 pub enum Error {
-    /// A file does not say what it should. Shown as `file:line field: found …, expected …`.
+    /// A file with invalid content. Displayed as `file:line field: found …, expected …`.
     #[error("{}{} {field}: found {found}, expected {expected}", on_one_line(path), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Input {
         /// The file or folder.
         path: PathBuf,
-        /// Line, from 1, where the file has lines.
+        /// Line, from 1, for files that have lines.
         line: Option<usize>,
         /// Column, key or quantity.
         field: String,
-        /// What stands there.
+        /// The value found.
         found: String,
-        /// What should, and what to do.
+        /// The value expected, with a remedy.
         expected: String,
     },
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: {source}", on_one_line(path))]
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// The mechanics refused the problem.
+    /// The simulation rejected the problem.
     #[error("{context}: {source}")]
     Mechanics {
-        /// Which sequence or stage.
+        /// The sequence or stage.
         context: String,
-        /// Why.
+        /// The cause.
         source: cloth_sim::error::Error,
     },
-    /// A measurement that no simulation grid or clip fits.
+    /// A measurement without a matching simulation grid or clip.
     #[error("sequence {sequence}: found {found}, expected {expected}")]
     Geometry {
         /// Name of the sequence.
         sequence: String,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What was expected, and what to do.
+        /// The value expected, with a remedy.
         expected: String,
     },
     /// A measurement that contradicts itself.
     #[error("{0}")]
     Contradiction(Notice),
-    /// A setting is outside what it may be.
+    /// A setting outside its range.
     #[error("{field}: found {found}, expected {expected}")]
     Setting {
         /// The setting.
         field: &'static str,
-        /// What was given.
+        /// The value given.
         found: String,
-        /// What it may be.
+        /// The values allowed.
         expected: String,
     },
 }
@@ -65,14 +65,14 @@ pub enum Error {
 /// Result with the crate's [`Error`](enum@Error).
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// A path as a message shows it: a name may hold a line feed.
+/// Formats a path on one line: a file name may contain a line feed.
 fn on_one_line(path: &Path) -> String {
     let escaped = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
     path.display().to_string().chars().map(escaped).collect()
 }
 
 impl Error {
-    /// Bad input in `path`.
+    /// Invalid input in `path`.
     pub fn input(
         path: &Path,
         line: impl Into<Option<usize>>,
@@ -89,12 +89,12 @@ impl Error {
         }
     }
 
-    /// A sequence that no grid or clip fits.
+    /// A sequence without a matching grid or clip.
     pub fn geometry(sequence: &str, found: impl Into<String>, expected: impl Into<String>) -> Self {
         Self::Geometry { sequence: sequence.into(), found: found.into(), expected: expected.into() }
     }
 
-    /// A failed call to the operating system on `path`.
+    /// A failed system call on `path`.
     pub fn io(path: &Path, source: std::io::Error) -> Self {
         Self::Io { path: path.to_path_buf(), source }
     }

@@ -1,12 +1,12 @@
-//! Contradictions within a measured set, found before anything is simulated.
+//! Detects contradictions within a measured set before any simulation.
 //!
 //! ```text
-//! set ──▶ checks of each sequence ──▶ the set that is fitted: without refused sequences, unobserved points left out
-//!                                └──▶ notices: said on the terminal, the page and in material.json
+//! set ──▶ checks of each sequence ──▶ the set to fit: without refused sequences, lost points marked as unobserved
+//!                                └──▶ notices: shown on the terminal and the page, and stored in material.json
 //! ```
 //!
-//! A check compares what two measured quantities say of the same thing: weight against the way a sheet sags, clip poses
-//! against the vertices that were seen, forces at the gauge length against rest.
+//! Each check compares two measured quantities that describe the same thing: weight and the sag of a sheet, clip
+//! poses and observed vertices, the force at the gauge length and the rest state.
 
 mod edge;
 mod failed_points;
@@ -26,22 +26,22 @@ use crate::error::{Error, Result};
 use crate::frame::{Fabric, Kind, MeasurementSet, Sequence};
 use crate::notice::{Notice, Severity};
 
-/// A set made ready to fit, and what was noticed on the way.
+/// An inspected set, ready to fit, and its notices.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inspection {
-    /// The set without the sequences that were refused.
+    /// The set without the refused sequences.
     pub set: MeasurementSet,
-    /// Everything noticed, sequence by sequence.
+    /// All notices, sequence by sequence.
     pub notices: Vec<Notice>,
-    /// The kinds of the refused sequences.
+    /// Names and kinds of the refused sequences.
     refused: Vec<(String, Kind)>,
 }
 
 impl Inspection {
-    /// The refusal of a sequence of one of some kinds, if there is one.
+    /// Reports a refused sequence of one of the given kinds.
     ///
     /// # Errors
-    /// That refusal.
+    /// The contradiction of that sequence.
     pub fn check_refusals(&self, kinds: &[Kind]) -> Result<()> {
         let of_kind = |notice: &&Notice| {
             let refused = |(name, kind): &(String, Kind)| *name == notice.sequence && kinds.contains(kind);
@@ -51,11 +51,11 @@ impl Inspection {
     }
 }
 
-/// Looks for contradictions in one sequence, adds a notice for each, and marks points as unobserved (NaN) that were not
-/// seen where the file has them.
+/// Checks one sequence, adds a notice for each contradiction, and marks points without a valid observation as
+/// unobserved (NaN).
 type Check = fn(&Fabric, &mut Sequence, &mut Vec<Notice>);
 
-/// All checks, in the order in which they run: the first that refuses a sequence is the last that sees it.
+/// All checks in the order in which they run. The first check that refuses a sequence ends its inspection.
 const CHECKS: [Check; 14] = [
     noise::check,
     shapes::check_presence,

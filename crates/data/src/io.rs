@@ -1,4 +1,4 @@
-//! Measurement sets on disk: their only reader and writer.
+//! Reads and writes measurement sets on disk. No other module does.
 //!
 //! ```text
 //! cotton-denim/
@@ -7,7 +7,7 @@
 //!     test.toml  mesh.obj  positions.npy (or frames/0000.obj …)  clips.csv  forces.csv  frames.csv
 //! ```
 //!
-//! Nothing is guessed: what does not fit is an [`Error::Input`] that names file, line, field and what was expected.
+//! No value is guessed: invalid input is an [`Error::Input`] with file, line, field and the expected value.
 
 mod clips;
 mod entries;
@@ -48,25 +48,25 @@ use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::Path;
 
-/// What a sequence's folder may hold.
+/// Permitted entries of a sequence folder.
 const SEQUENCE: [&str; 7] =
     ["test.toml", "mesh.obj", "positions.npy", "frames", "clips.csv", "forces.csv", "frames.csv"];
-/// Other files of these kinds are misspelt rather than meant for someone else.
+/// Unknown files with these extensions count as misspelt, other files as unrelated.
 const DATA: [&str; 5] = [".toml", ".obj", ".npy", ".csv", ".ply"];
 
-/// Reads a JSON file of a version that this program writes.
+/// Reads a JSON file of the version that this program writes.
 ///
 /// # Errors
-/// A file that cannot be read; no JSON, or another version; a key unknown, missing or twice; a value of another type. All
-/// with line and key.
+/// An unreadable file; text that is not JSON, or of another version; an unknown, missing or duplicate key; a value of
+/// another type. All with line and key.
 pub fn read_json<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<T> {
     json_file::parse_version(path, &read_text(path)?, schema)
 }
 
-/// Reads a fabric sample with all its sequences, ordered by name.
+/// Reads a fabric sample and all its sequences, ordered by name.
 ///
 /// # Errors
-/// A file is missing, or does not say what it should.
+/// A missing or invalid file.
 pub fn read_set(folder: &Path) -> Result<MeasurementSet> {
     let present = entries(folder)?;
     check_set(folder, &present)?;
@@ -76,18 +76,18 @@ pub fn read_set(folder: &Path) -> Result<MeasurementSet> {
     Ok(MeasurementSet { fabric, sequences })
 }
 
-/// Reads the sample alone, `fabric.toml` of a set's folder.
+/// Reads the sample alone: `fabric.toml` of a set folder.
 ///
 /// # Errors
-/// It is missing, or does not say what it should.
+/// A missing or invalid file.
 pub fn read_fabric(folder: &Path) -> Result<Fabric> {
     fabric::read(&folder.join("fabric.toml"))
 }
 
-/// Reads one sequence; its name is the folder's.
+/// Reads one sequence, named after its folder.
 ///
 /// # Errors
-/// A file is missing, or does not say what it should.
+/// A missing or invalid file.
 pub fn read_sequence(folder: &Path) -> Result<Sequence> {
     let name = folder_name(folder)?;
     let present = entries(folder)?;
@@ -103,7 +103,7 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
                 None,
                 "file",
                 found,
-                "none: nothing is clipped in bending",
+                "none: bending tests have no clips",
             ));
         }
     }
@@ -130,29 +130,29 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
     })
 }
 
-/// Writes a set's folder, replacing an older set there with all that its folder holds.
+/// Writes a set folder and replaces an existing set there, including all other contents of that folder.
 ///
-/// Reading it gives the same set, to the bit, but for two things: observed positions are rounded to float32 (6 nm at
-/// 0.1 m), and the mesh forgets the grid that it was made from.
+/// Reading it back gives an identical set with two exceptions: observed positions are rounded to float32 (6 nm at 0.1
+/// m), and the mesh loses the grid it was made from.
 ///
 /// # Errors
-/// The set is one that no folder can hold, or could not be read back; the folder exists and is not a set; the
-/// operating system refuses.
+/// A set that no folder can represent or that does not read back; an existing folder that is not a set; a failed
+/// system call.
 pub fn write_set(folder: &Path, set: &MeasurementSet) -> Result<()> {
     refuse_other_folder(folder, "fabric.toml")?;
     replace_folder(folder, |temporary| fill_set(temporary, folder, set))
 }
 
-/// Writes a set into an empty folder that will take the place of another: errors name the latter.
+/// Writes a set into an empty folder that will replace another one; errors name the latter.
 ///
 /// # Errors
-/// The set is one that no folder can hold, or could not be read back; the operating system refuses.
+/// A set that no folder can represent or that does not read back; a failed system call.
 pub fn fill_set(temporary: &Path, folder: &Path, set: &MeasurementSet) -> Result<()> {
     if let Some(pair) = set.sequences.windows(2).find(|pair| pair[0].name >= pair[1].name) {
         return Err(Error::Setting {
             field: "sequences[].name",
             found: format!("{} before {}", pair[0].name, pair[1].name),
-            expected: "every name once, in order".into(),
+            expected: "unique names in ascending order".into(),
         });
     }
     let read_back = |error| relocated(error, temporary, folder);
@@ -166,10 +166,10 @@ pub fn fill_set(temporary: &Path, folder: &Path, set: &MeasurementSet) -> Result
     Ok(())
 }
 
-/// Adds a sequence's folder to an existing set, replacing an older sequence of that name.
+/// Adds a sequence folder to an existing set and replaces a sequence of the same name.
 ///
 /// # Errors
-/// As for [`write_set`]; the set does not exist.
+/// As for [`write_set`]; a missing set.
 pub fn write_sequence(set_folder: &Path, sequence: &Sequence) -> Result<()> {
     read_fabric(set_folder)?;
     let folder = set_folder.join(checked_name(sequence)?);
@@ -179,7 +179,7 @@ pub fn write_sequence(set_folder: &Path, sequence: &Sequence) -> Result<()> {
     })
 }
 
-/// Writes a sequence's files, and reads them back: what cannot be read must not be written.
+/// Writes the files of a sequence and reads them back, so that unreadable output is never kept.
 fn fill_sequence(folder: &Path, sequence: &Sequence) -> Result<()> {
     let Sequence { mesh, clips, frames, .. } = sequence;
     check_counts(sequence)?;
@@ -192,19 +192,19 @@ fn fill_sequence(folder: &Path, sequence: &Sequence) -> Result<()> {
     read_sequence(folder).map(|_| ())
 }
 
-/// In bending the shapes alone are the measurement.
+/// In bending tests the shapes are the only measurement.
 fn bending_frames(folder: &Path, shapes: Option<Vec<Option<npy::Shape>>>) -> Result<Vec<Frame>> {
-    // Without shapes the test shows nothing; the other tests of the set do.
+    // A test without shapes carries no information, but the other tests of the set remain usable.
     let shapes = shapes.unwrap_or_default();
     if let Some(frame) = shapes.iter().position(Option::is_none) {
         let path = folder.join("positions.npy");
         let found = format!("no observed vertex in frame {frame}");
-        return Err(Error::input(&path, None, "file", found, "one at least in every frame"));
+        return Err(Error::input(&path, None, "file", found, "at least one in every frame"));
     }
     Ok(shapes.into_iter().map(|positions| Frame { positions, ..Frame::default() }).collect())
 }
 
-/// Elsewhere the clips are, and shapes may come with them.
+/// All other tests have clips, and optionally shapes.
 fn clipped_frames(
     folder: &Path,
     test: &test_file::TestFile,
@@ -223,7 +223,7 @@ fn clipped_frames(
     Ok(poses.into_iter().zip(shapes).map(frame).collect())
 }
 
-/// A folder that is no set may hold some, or be a part of one.
+/// Explains a folder that is not a set: it may contain sets, or be part of one.
 fn check_set(folder: &Path, present: &Entries) -> Result<()> {
     if present.contains_key("fabric.toml") {
         return Ok(());
@@ -240,7 +240,7 @@ fn check_set(folder: &Path, present: &Entries) -> Result<()> {
     }
 }
 
-/// A misspelt file would be left out in silence.
+/// A misspelt file would otherwise be ignored silently.
 fn check_names(folder: &Path, present: &Entries) -> Result<()> {
     let strange = |(name, is_folder): &(&String, &bool)| {
         !SEQUENCE.contains(&name.as_str()) && (**is_folder || DATA.iter().any(|kind| name.ends_with(kind)))
@@ -262,7 +262,7 @@ fn folder_name(folder: &Path) -> Result<String> {
         .ok_or_else(|| Error::input(folder, None, "name", "no name in UTF-8", "a folder with a name"))
 }
 
-/// A sequence's name, if it can be a folder's.
+/// The name of a sequence, checked for use as a folder name.
 fn checked_name(sequence: &Sequence) -> Result<&str> {
     let name = sequence.name.as_str();
     if name.is_empty()
@@ -279,7 +279,7 @@ fn checked_name(sequence: &Sequence) -> Result<&str> {
     Ok(name)
 }
 
-/// Writing replaces whole folders: never one that holds something else.
+/// Refuses to replace a folder that holds other files: writing replaces whole folders.
 pub fn refuse_other_folder(folder: &Path, mark: &str) -> Result<()> {
     let occupied = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if occupied && !folder.join(mark).exists() {
@@ -289,7 +289,7 @@ pub fn refuse_other_folder(folder: &Path, mark: &str) -> Result<()> {
     Ok(())
 }
 
-/// Lists that would be cut short in silence, or point nowhere.
+/// Checks counts and indices that would otherwise be truncated silently or point nowhere.
 fn check_counts(sequence: &Sequence) -> Result<()> {
     let clips = sequence.clips.len();
     let refuse = |field, found: usize, expected: String| {
@@ -314,7 +314,7 @@ fn check_counts(sequence: &Sequence) -> Result<()> {
     Ok(())
 }
 
-/// Names the folder that was asked for, not the temporary one.
+/// Replaces the temporary folder in an error by the requested one.
 fn relocated(error: Error, temporary: &Path, folder: &Path) -> Error {
     match error {
         Error::Input { path, line, field, found, expected } => {

@@ -1,15 +1,15 @@
-//! Measured fabric as data and as files.
+//! Measured fabric data: types, files and checks.
 //!
 //! | module | role |
 //! |---|---|
-//! | [`frame`] | what was measured: set, sequence, frame |
-//! | [`io`], [`store`] | sets as folders; outputs that are written whole or not at all |
-//! | [`strip`], [`rig`] | a tensile machine's table; a known cloth, measured by simulation |
-//! | [`rectangle`], [`locator`] | a specimen at rest, and where a point lies in it |
-//! | [`measure`] | a frame summed up in one figure |
-//! | [`inspection`], [`notice`] | where a measurement contradicts itself, before anything is simulated |
-//! | [`curve_file`], [`curve_edit`], [`points`] | a curve as a table; curves made wider, stronger, longer; control points by hand |
-//! | [`error`] | what is wrong with an input, and where |
+//! | [`frame`] | measured data: set, sequence, frame |
+//! | [`io`], [`store`] | sets as folders; atomic output |
+//! | [`strip`], [`rig`] | import of tensile tables; simulated measurements of known fabrics |
+//! | [`rectangle`], [`locator`] | the specimen at rest; location of points in it |
+//! | [`measure`] | scalar summaries of a frame |
+//! | [`inspection`], [`notice`] | contradictions within a measurement, found before simulation |
+//! | [`curve_file`], [`curve_edit`], [`points`] | curve tables; edits of curves; control points in TOML |
+//! | [`error`] | errors with the place of the fault |
 
 mod branch;
 pub mod curve_edit;

@@ -1,14 +1,14 @@
-//! Where a point lies in a flat mesh.
+//! Locates points in a flat mesh.
 
 use crate::frame::MeshPoint;
 use crate::rectangle::bounds;
 use cloth_sim::mesh::Mesh;
 use nalgebra::Vector2;
 
-/// Finds the triangle of a flat mesh that a point lies in, through buckets.
+/// Finds the triangle of a flat mesh that contains a point, by means of buckets.
 pub struct Locator<'a> {
     mesh: &'a Mesh,
-    /// The vertices in the plane, from 0 to `size`, m.
+    /// In-plane vertex positions, from 0 to `size`, m.
     flat: &'a [Vector2<f64>],
     size: [f64; 2],
     buckets: Vec<Vec<usize>>,
@@ -16,9 +16,9 @@ pub struct Locator<'a> {
 }
 
 impl<'a> Locator<'a> {
-    /// Sorts a mesh's triangles.
+    /// Sorts the triangles of a mesh into buckets.
     ///
-    /// * `flat` — its vertices in the plane, between 0 and `size`, m
+    /// * `flat` — in-plane vertex positions, between 0 and `size`, m
     pub fn new(mesh: &'a Mesh, flat: &'a [Vector2<f64>], size: [f64; 2]) -> Self {
         let side = ((mesh.triangles.len() as f64).sqrt() as usize / 2).max(1);
         let mut locator = Self { mesh, flat, size, buckets: vec![Vec::new(); side * side], side };
@@ -37,7 +37,7 @@ impl<'a> Locator<'a> {
         [place(p.x, self.size[0]), place(p.y, self.size[1])]
     }
 
-    /// The triangle that a point lies in, or lies outside of the least (rounding at the border).
+    /// The triangle that contains a point, or is nearest to it in case of rounding at the border.
     pub fn find(&self, p: Vector2<f64>) -> MeshPoint {
         let [i, j] = self.bucket(p);
         let here = &self.buckets[j * self.side + i];
@@ -49,7 +49,7 @@ impl<'a> Locator<'a> {
         };
         match best(&mut here.iter().copied()) {
             Some(point) if depth(&point) > -1e-9 => point,
-            // A coarse mesh may leave a bucket's border to a neighbour.
+            // In a coarse mesh the border of a bucket may belong to a neighbour.
             _ => best(&mut (0..self.mesh.triangles.len()))
                 .unwrap_or(MeshPoint { triangle: 0, weights: [1.0, 0.0, 0.0] }),
         }

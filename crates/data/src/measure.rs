@@ -1,4 +1,4 @@
-//! What a test is summed up by, measured or simulated: one angle, one torque, one force, one profile a frame.
+//! Scalar summaries of a test, measured or simulated: one angle, torque, force or profile per frame.
 //!
 //! ```text
 //!  effective shear        aggregated torque      force difference         bend profile
@@ -9,43 +9,43 @@
 //!                            ◀──
 //! ```
 //!
-//! Plain functions on plain data, so that a measured frame and a simulated one are summed up alike. From a measured
-//! frame [`clamped`], [`clip_centres`] and [`pulls`] take what they ask for; a simulation has the positions of its
-//! nodes, and its clips' forces make a [`Pull`] each, or a pull for every clamped node.
+//! Plain functions on plain data, so that measured and simulated frames are evaluated identically. [`clamped`],
+//! [`clip_centres`] and [`pulls`] extract the inputs from a measured frame. A simulation supplies the positions of
+//! its nodes, and one [`Pull`] per clip or per clamped node.
 //!
-//! Source: Miguel et al. 2012, §6 and figure 7, which name the measures; what they leave open is decided here.
+//! Source: Miguel et al. 2012, §6 and figure 7, which name the measures; details they leave open are defined here.
 
 use crate::frame::{Clip, Cord, Frame, Sequence, Table};
 use cloth_sim::mesh::Grid;
 use nalgebra::{Isometry3, Matrix2, Matrix3x2, Point3, SVector, Vector2, Vector3};
 use std::f64::consts::TAU;
 
-/// Points this much shorter across than along lie on a line.
+/// Ratio of extent across to extent along below which points are collinear.
 const COLLINEAR: f64 = 1e-6;
 
-/// A force on a clip, and where it acts. Several may act on one clip.
+/// A force on a clip and its point of application. A clip may have several.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pull {
     /// Index of the clip.
     pub clip: usize,
-    /// What the cords exert on the clip, N.
+    /// Force of the cords on the clip, N.
     pub force: Vector3<f64>,
-    /// Where, m.
+    /// Point of application, m.
     pub point: Vector3<f64>,
 }
 
-/// One line of the cloth parallel to the table's edge; the mean of its nodes.
+/// A line of the cloth parallel to the table edge; the mean of its nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfilePoint {
-    /// Distance at rest from the line that is farthest in on the table, m.
+    /// Rest distance from the rear line on the table, m.
     pub rest: f64,
-    /// How far beyond the edge, m; negative on the table.
+    /// Distance beyond the edge, m; negative on the table.
     pub outward: f64,
-    /// How high above the table, m; negative below it.
+    /// Height above the table, m; negative below it.
     pub height: f64,
 }
 
-/// Material coordinates, m, and positions in a frame, m, of all vertices that clips hold.
+/// Material coordinates and positions in a frame, m, of all clamped vertices.
 pub fn clamped(sequence: &Sequence, frame: &Frame) -> (Vec<Vector2<f64>>, Vec<Vector3<f64>>) {
     let clips = sequence.clips.iter().zip(&frame.poses);
     let vertices = clips.flat_map(|(clip, pose)| clip.vertices.iter().map(move |&vertex| (vertex, pose)));
@@ -55,7 +55,7 @@ pub fn clamped(sequence: &Sequence, frame: &Frame) -> (Vec<Vector2<f64>>, Vec<Ve
     vertices.map(place).unzip()
 }
 
-/// Where the middle of each clip is in a frame, m: the mean of the vertices that it holds.
+/// Centre of each clip in a frame, m: the mean of its vertices.
 pub fn clip_centres(sequence: &Sequence, frame: &Frame) -> Vec<Vector3<f64>> {
     let centre = |(clip, pose): (&Clip, &Isometry3<f64>)| {
         let vertices = clip.vertices.iter().map(|&vertex| sequence.mesh.positions[vertex]);
@@ -64,7 +64,7 @@ pub fn clip_centres(sequence: &Sequence, frame: &Frame) -> Vec<Vector3<f64>> {
     sequence.clips.iter().zip(&frame.poses).map(centre).collect()
 }
 
-/// The cords of a frame. One without a point of application acts at its clip's centre.
+/// Cord forces of a frame. A force without a point of application acts at the centre of its clip.
 pub fn pulls(sequence: &Sequence, frame: &Frame) -> Vec<Pull> {
     let centres = clip_centres(sequence, frame);
     let pull = |cord: &Cord| Pull {
@@ -75,7 +75,7 @@ pub fn pulls(sequence: &Sequence, frame: &Frame) -> Vec<Pull> {
     frame.cords.iter().map(pull).collect()
 }
 
-/// Shear angle of the affine map that is closest to how the clamped vertices moved, rad.
+/// Shear angle of the affine map that fits the motion of the clamped vertices best, rad.
 ///
 /// ```text
 /// minimise over A, b   Σ |A mᵢ + b − xᵢ|²        A (3×2) = (w_u w_v)
@@ -83,8 +83,8 @@ pub fn pulls(sequence: &Sequence, frame: &Frame) -> Vec<Pull> {
 /// ```
 ///
 /// * `material` — material coordinates mᵢ, m
-/// * `now` — where they are, xᵢ, m; points that are not finite were not observed and count for nothing
-/// * returns — positive where weft and warp close; `None` where the points lie on a line, at rest or now
+/// * `now` — positions xᵢ, m; points that are not finite are unobserved and ignored
+/// * returns — positive if the angle between weft and warp closes; `None` if the points are collinear, at rest or now
 ///
 /// Source: Miguel et al. 2012, figure 7 ("effective shear").
 pub fn effective_shear(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Option<f64> {
@@ -94,7 +94,7 @@ pub fn effective_shear(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Optio
     (across > COLLINEAR * weft.norm().max(warp.norm()).powi(2)).then(|| weft.dot(&warp).atan2(across))
 }
 
-/// The linear part of the affine map that is closest to how points moved.
+/// Linear part of the best-fit affine map.
 pub fn affine_map(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Option<Matrix3x2<f64>> {
     let seen = || material.iter().zip(now).filter(|(_, x)| x.iter().all(|c| c.is_finite()));
     let (m, x) = (mean(seen().map(|(m, _)| *m)), mean(seen().map(|(_, x)| *x)));
@@ -103,29 +103,30 @@ pub fn affine_map(material: &[Vector2<f64>], now: &[Vector3<f64>]) -> Option<Mat
         spread += (material - m) * (material - m).transpose();
         image += (now - x) * (material - m).transpose();
     }
-    // Written so that no point at all, whose mean is NaN, is caught too.
+    // This form also catches an empty set, whose mean is NaN.
     if !(spread.determinant() > (COLLINEAR * spread.trace()).powi(2)) {
         return None;
     }
     Some(image * spread.try_inverse()?)
 }
 
-/// Torque of the clips' forces about the cloth's centre along the rest normal, every other clip negative, N·m.
+/// Torque of the clip forces about the centre of the cloth along the rest normal, with alternating signs, N·m.
 ///
 /// ```text
 /// T = Σ s_c (p − centre) × F · n        s = +1, −1, +1, … around the sheet, +1 for clip 0; two clips: +1
 /// ```
 ///
-/// Without the signs the sum is the torque on the whole sheet, which balance makes zero. Neighbouring bars of a sheared
-/// sheet turn it opposite ways, each by τ a · a/2 where τ is the shear force per length and a the side.
+/// Without the signs the sum is the torque on the whole sheet, which is zero in equilibrium. Neighbouring bars of a
+/// sheared sheet turn it in opposite directions, each by τ a · a/2, where τ is the shear force per length and a the
+/// side.
 ///
 /// * `pulls` — the forces
-/// * `centres` — the clips' middles, one a clip, m; they tell which follows which around the sheet
-/// * `centre` — the cloth's centre, m
-/// * `normal` — of the sheet at rest, unit length
+/// * `centres` — centres of the clips, m; they define the order around the sheet
+/// * `centre` — centre of the cloth, m
+/// * `normal` — normal of the sheet at rest, unit length
 ///
-/// Source: Miguel et al. 2012, figure 7 ("aggregated torque"); clips are taken in the order around the sheet, not in
-/// that of the file.
+/// Source: Miguel et al. 2012, figure 7 ("aggregated torque"); the clips are ordered around the sheet, not as in the
+/// file.
 pub fn aggregated_torque(
     pulls: &[Pull],
     centres: &[Vector3<f64>],
@@ -136,8 +137,8 @@ pub fn aggregated_torque(
     pulls.iter().map(|pull| signs[pull.clip] * (pull.point - centre).cross(&pull.force).dot(normal)).sum()
 }
 
-/// +1 and −1 in turn around the sheet, +1 for clip 0; for two clips +1: opposite bars pulled opposite ways turn the sheet
-/// alike, and a sign would cancel what is to be measured.
+/// Alternating signs around the sheet, +1 for clip 0. For two clips both are +1: opposite bars pulled in opposite
+/// directions turn the sheet the same way, and alternating signs would cancel the torque.
 fn alternating(centres: &[Vector3<f64>], centre: &Vector3<f64>, normal: &Vector3<f64>) -> Vec<f64> {
     if centres.len() < 3 {
         return vec![1.0; centres.len()];
@@ -153,9 +154,10 @@ fn alternating(centres: &[Vector3<f64>], centre: &Vector3<f64>, normal: &Vector3
     signs
 }
 
-/// Difference of the two corner-to-corner forces of a sheet held by four clips, N: the pair of clip 0 less the other.
+/// Difference of the two corner-to-corner forces of a sheet held by four clips, N: the pair of clip 0 minus the
+/// other.
 ///
-/// `None` unless there are four clips and a force on each.
+/// `None` unless there are four clips with a force on each.
 ///
 /// Source: Miguel et al. 2012, figure 7 ("stretching force difference").
 pub fn stretching_force_difference(pulls: &[Pull], centres: &[Vector3<f64>]) -> Option<f64> {
@@ -163,18 +165,18 @@ pub fn stretching_force_difference(pulls: &[Pull], centres: &[Vector3<f64>]) -> 
     Some(of_first - other)
 }
 
-/// The corner-to-corner forces of a sheet held by four clips, N: of the pair with clip 0, and of the other.
+/// Corner-to-corner forces of a sheet held by four clips, N: the pair with clip 0, then the other.
 ///
 /// ```text
 /// F = ½ (F_b − F_a)·(x_b − x_a)/|x_b − x_a|        positive in tension
 /// ```
 ///
-/// Two pairs are opposite where their distances have the largest sum: the diagonals of a quadrilateral are longer
-/// together than two sides.
+/// Opposite pairs are those with the largest sum of distances: the diagonals of a quadrilateral are together longer
+/// than two opposite sides.
 ///
-/// * `pulls` — the forces; those on one clip are summed
-/// * `centres` — the clips' middles, m
-/// * returns — `None` unless there are four clips and a force on each
+/// * `pulls` — the forces; those on the same clip are summed
+/// * `centres` — centres of the clips, m
+/// * returns — `None` unless there are four clips with a force on each
 pub fn corner_forces(pulls: &[Pull], centres: &[Vector3<f64>]) -> Option<[f64; 2]> {
     let &[p, q, r, s] = centres else { return None };
     let lengths = [(1, q, r, s), (2, r, q, s), (3, s, q, r)]
@@ -190,14 +192,14 @@ pub fn corner_forces(pulls: &[Pull], centres: &[Vector3<f64>]) -> Option<[f64; 2
     Some([between(0, opposite)?, between(others[0], others[1])?])
 }
 
-/// Profile of a sheet that hangs over a table's edge: a point for each of the grid's lines parallel to the edge, from the
-/// one farthest in on the table to the tip.
+/// Profile of a sheet over a table edge: one point per grid line parallel to the edge, from the rear line on the
+/// table to the tip.
 ///
-/// * `grid` — the grid; its lines run along the edge and across it
-/// * `positions` — of its nodes, in the same axes as the table, m; nodes that are not finite were not observed
+/// * `grid` — its lines run along and across the edge
+/// * `positions` — node positions in the axes of the table, m; nodes that are not finite are unobserved
 /// * `table` — the table
-/// * `gravity` — tells which way is down, m/s²
-/// * returns — a line of which no node was observed is NaN
+/// * `gravity` — defines the downward direction, m/s²
+/// * returns — lines without observed nodes are NaN
 ///
 /// Source: Miguel et al. 2012, figure 7 (profiles across the edge).
 pub fn bend_profile(
@@ -242,29 +244,29 @@ pub fn bend_profile(
     profile
 }
 
-/// True if the observed line that lies farther in is the last one.
+/// True if the observed line nearest the rear is the last one.
 fn tip_comes_first(profile: &[ProfilePoint]) -> bool {
     let seen = || profile.iter().filter(|point| !point.outward.is_nan());
     seen().next().zip(seen().next_back()).is_some_and(|(first, last)| first.outward > last.outward)
 }
 
-/// How far the tip of a profile hangs below the table, m; `None` if it was not observed.
+/// Drop of the tip of a profile below the table, m; `None` if it was not observed.
 pub fn tip_deflection(profile: &[ProfilePoint]) -> Option<f64> {
     profile.last().map(|tip| -tip.height).filter(|deflection| !deflection.is_nan())
 }
 
-/// Where a pose takes a rest point, m.
+/// Position of a rest point under a pose, m.
 pub fn moved(pose: &Isometry3<f64>, rest: &Vector3<f64>) -> Vector3<f64> {
     (pose * Point3::from(*rest)).coords
 }
 
-/// Mean of vectors; NaN for none.
+/// Mean of vectors; NaN for an empty sequence.
 pub fn mean<const D: usize>(vectors: impl Iterator<Item = SVector<f64, D>>) -> SVector<f64, D> {
     let (count, sum) = vectors.fold((0usize, SVector::zeros()), |(count, sum), v| (count + 1, sum + v));
     sum / count as f64
 }
 
-/// The middle of some numbers, the upper of two; `None` of none.
+/// Median, the upper of the middle two; `None` for an empty list.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
@@ -304,7 +306,7 @@ mod tests {
         }
     }
 
-    /// Anywhere in space.
+    /// An arbitrary rigid motion.
     fn motion() -> Isometry3<f64> {
         Isometry3::new(Vector3::new(0.3, -0.2, 0.9), Vector3::new(0.4, 1.2, -0.7))
     }
@@ -329,7 +331,7 @@ mod tests {
     #[test]
     fn shear_is_a_least_squares_fit_of_what_was_seen() {
         let Sequence { mesh, .. } = framed();
-        // A pattern without affine part: + − + − at the corners.
+        // A pattern without an affine part: + − + − at the corners.
         let mut now: Vec<_> = mesh.material.iter().map(|m| sheared(0.3) * m).collect();
         for (corner, sign) in [(0, 1.0), (2, -1.0), (6, -1.0), (8, 1.0)] {
             now[corner] += Vector3::new(0.002, -0.001, 0.003) * sign;
@@ -352,7 +354,7 @@ mod tests {
         assert_eq!(effective_shear(&mesh.material, &[Vector3::repeat(f64::NAN); 9]), None);
     }
 
-    /// The frame of a sheet that is pulled along its bars by τ a each, without shape.
+    /// Frame of a sheet pulled along its bars by τ a each, without shapes.
     fn pulled_along_the_bars(sequence: &Sequence, force: f64) -> Frame {
         let directions = [-Vector3::x(), Vector3::x(), -Vector3::y(), Vector3::y()];
         let cord =
@@ -373,7 +375,7 @@ mod tests {
         assert!((centre - Vector3::new(0.05, 0.05, 0.0)).norm() < 1e-15);
         let torque =
             |pulls: &[Pull], normal: Vector3<f64>| aggregated_torque(pulls, &centres, &centre, &normal);
-        // Low and high turn it clockwise by 3 N × 50 mm each, left and right the other way.
+        // Low and high turn it clockwise by 3 N × 50 mm each, left and right counter-clockwise.
         assert!((torque(&pulls, Vector3::z()) + 0.6).abs() < 1e-15);
         assert!((torque(&pulls, -Vector3::z()) - 0.6).abs() < 1e-15);
         let whole: f64 = pulls.iter().map(|pull| (pull.point - centre).cross(&pull.force).z).sum();
@@ -385,7 +387,7 @@ mod tests {
         let sequence = framed();
         let mut frame = pulled_along_the_bars(&sequence, 0.0);
         let cord = |clip, force, point| Cord { clip, force, point: Some(point) };
-        // Two cords on a bar, at its ends: a couple of 2 N × 0.1 m on low, half of it on left.
+        // Two cords at the ends of a bar: a couple of 2 N × 0.1 m on low, half of it on left.
         frame.cords = vec![
             cord(0, Vector3::new(0.0, -2.0, 1.0), Vector3::zeros()),
             cord(0, Vector3::new(0.0, 2.0, 1.0), Vector3::new(SIDE, 0.0, 0.0)),
@@ -394,13 +396,13 @@ mod tests {
         ];
         let (centres, pulls) = (clip_centres(&sequence, &frame), pulls(&sequence, &frame));
         let centre = Vector3::new(0.05, 0.05, 0.0);
-        // Left follows low around the sheet, though high does in the file: 0.2 − 0.1.
+        // Left follows low around the sheet, although high does in the file: 0.2 − 0.1.
         let torque = aggregated_torque(&pulls, &centres, &centre, &Vector3::z());
         assert!((torque - 0.1).abs() < 1e-15, "{torque}");
     }
 
-    /// Four clips at the corners, anywhere in space, the files' order as given; 1.5 N along one diagonal, 4 N along the
-    /// other, and a common force on all.
+    /// Four clips at the corners, arbitrarily placed, in the given file order; 1.5 N along one diagonal, 4 N along
+    /// the other, and a common force on all.
     fn corners(order: [usize; 4]) -> (Vec<Pull>, Vec<Vector3<f64>>) {
         let place =
             [[0.0, 0.0], [SIDE, 0.0], [SIDE, SIDE], [0.0, SIDE]].map(|[x, y]| Vector3::new(x, y, 0.0));
@@ -421,7 +423,7 @@ mod tests {
             let (mut pulls, centres) = corners(order);
             let found = stretching_force_difference(&pulls, &centres).unwrap();
             assert!((found - expected).abs() < 1e-14, "{order:?}: {found}");
-            // Two cords on a clip count as one; a clip without any was not measured.
+            // Two cords on a clip count as one; a clip without cords was not measured.
             let half = Pull { force: pulls[1].force / 2.0, ..pulls[1] };
             pulls[1] = half;
             assert!((stretching_force_difference(&pulls, &centres).unwrap() - expected).abs() > 0.1);
@@ -447,7 +449,8 @@ mod tests {
     const TABLE: Table =
         Table { edge_point_m: [0.5, 0.0, 0.2], edge_direction: [0.0, -1.0, 0.0], outward: [1.0, 0.0, 0.0] };
 
-    /// Bent to a right angle at the edge, half of it hanging; `turns` quarter turns put the tip on each of its sides.
+    /// Bent to a right angle at the edge, half of it hanging; `turns` quarter turns place the tip on each of its
+    /// sides.
     fn folded(grid: &Grid, turns: usize) -> Vec<Vector3<f64>> {
         let place = |p: &Vector3<f64>| {
             let along = [p.x, p.y, grid.width - p.x, grid.height - p.y][turns];

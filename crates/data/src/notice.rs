@@ -1,38 +1,38 @@
-//! What was noticed of a measurement: a contradiction, or what was done about one.
+//! Notices about a measurement: a contradiction, or a correction.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How much a notice matters.
+/// Severity of a notice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
-    /// Worth knowing; the curve is as good as without it.
+    /// For information; the curve is unaffected.
     Remark,
-    /// The sequence is fitted, but its curves may be wrong by more than their bands.
+    /// The sequence is fitted, but the error of its curves may exceed their bands.
     Doubt,
-    /// The sequence contradicts itself and takes no part.
+    /// The sequence contradicts itself and is not fitted.
     Refusal,
 }
 
-/// A contradiction within a sequence, or something that was done about one.
+/// A contradiction within a sequence, or a correction made to it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Notice {
-    /// How much it matters.
+    /// Severity.
     pub severity: Severity,
     /// Name of the sequence.
     pub sequence: String,
-    /// File of the sequence's folder, with the field, row or frame, as `test.toml gravity_m_s2`.
+    /// File in the sequence folder with field, row or frame, e.g. `test.toml gravity_m_s2`.
     pub place: String,
-    /// The contradiction, with its figures.
+    /// The contradiction, with its values.
     pub found: String,
-    /// What was expected, and what to do.
+    /// The value expected, with a remedy.
     pub expected: String,
 }
 
 impl Notice {
-    /// Worth knowing.
+    /// A notice for information.
     pub fn remark(
         sequence: &str,
         place: impl Into<String>,
@@ -42,7 +42,7 @@ impl Notice {
         Self::new(Severity::Remark, sequence, place, found, expected)
     }
 
-    /// The sequence's curves may be wrong by more than their bands.
+    /// A doubt: the error of the curves may exceed their bands.
     pub fn doubt(
         sequence: &str,
         place: impl Into<String>,
@@ -52,7 +52,7 @@ impl Notice {
         Self::new(Severity::Doubt, sequence, place, found, expected)
     }
 
-    /// The sequence takes no part.
+    /// A refusal: the sequence is not fitted.
     pub fn refusal(
         sequence: &str,
         place: impl Into<String>,
@@ -62,7 +62,7 @@ impl Notice {
         Self::new(Severity::Refusal, sequence, place, found, expected)
     }
 
-    /// With its severity.
+    /// A notice of the given severity.
     pub fn new(
         severity: Severity,
         sequence: &str,

@@ -1,4 +1,4 @@
-//! The control points of a curve in a TOML file.
+//! Control points of a curve in a TOML file.
 
 use crate::error::Result;
 use crate::io::TomlFile;
@@ -6,23 +6,23 @@ use cloth_sim::curve::NegativeStrain;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::error::Error as Defect;
 
-/// Control points as a file has them.
+/// Control points as stored in a file.
 pub struct Points<'a> {
-    /// The table that they stand in, such as `curves.shear`.
+    /// The enclosing table, e.g. `curves.shear`.
     pub table: String,
-    /// Key and values of the strains, or curvatures.
+    /// Key and values of the strains or curvatures.
     pub places: (&'a str, &'a [f64]),
-    /// Key and values of the stiffnesses, or rigidities.
+    /// Key and values of the stiffnesses or rigidities.
     pub values: (&'a str, &'a [f64]),
-    /// Strain of the model's own elements over the file's.
+    /// Ratio of the element strain to the strain of the file.
     pub strain_per_unit: f64,
 }
 
 impl Points<'_> {
-    /// The curve over the model's own strains.
+    /// Curve over the strain of the elements.
     ///
     /// # Errors
-    /// Points that make no curve, with the line of the one at fault.
+    /// Points that do not form a curve, with the line of the invalid one.
     pub fn curve(&self, negative: NegativeStrain, file: &TomlFile) -> Result<StiffnessCurve> {
         let Self { table, places, values, strain_per_unit: scale } = self;
         let refuse = |key: &str, point: usize, found: String, expected: &str| {

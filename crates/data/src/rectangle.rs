@@ -1,25 +1,25 @@
-//! The flat rectangle that a specimen is at rest, wherever it lies in space.
+//! The flat rectangle of a specimen at rest, in any position and orientation.
 
 use crate::error::{Error, Result};
 use crate::frame::Sequence;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector2, Vector3};
 
-/// What leaves a plane by no more than this slope counts as in it: flattening changes strains by half its square, 1e-5.
+/// Slope from the plane below which a mesh counts as flat: flattening changes strains by half its square, 1e-5.
 pub const FLAT_SLOPE: f64 = 4.5e-3;
 
 /// The rest mesh of a sequence as a rectangle.
 pub struct Rectangle {
-    /// Maps world coordinates into the rectangle's frame: corner at 0, x along its side nearer to weft.
+    /// Maps world coordinates into the frame of the rectangle: corner at 0, x along the side nearer to weft.
     pub frame: Isometry3<f64>,
     /// Extent along x and y, m.
     pub size: [f64; 2],
-    /// Rest positions in its frame, m.
+    /// Rest positions in that frame, m.
     pub flat: Vec<Vector2<f64>>,
 }
 
 impl Rectangle {
-    /// The smallest rectangle around the rest mesh.
+    /// Smallest rectangle around the rest mesh.
     ///
     /// # Errors
     /// A rest mesh that is not a flat rectangle.
@@ -44,7 +44,7 @@ impl Rectangle {
         };
         let hull = convex_hull(flatten(&turned(weft)));
         let weft_axes = turned(weft);
-        // The side of the hull whose box is smallest; among equal ones the nearest to weft.
+        // The hull side with the smallest box; among equal ones the nearest to weft.
         let sides = (0..hull.len()).map(|i| (hull[(i + 1) % hull.len()] - hull[i]).normalize());
         let best = sides
             .map(|side| {
@@ -77,7 +77,7 @@ impl Rectangle {
     }
 }
 
-/// The two sides of the rest rectangle, m.
+/// Sides of the rest rectangle, m.
 ///
 /// # Errors
 /// A rest mesh that is not a flat rectangle.
@@ -85,18 +85,18 @@ pub fn rest_size(sequence: &Sequence) -> Result<[f64; 2]> {
     Ok(Rectangle::of(sequence)?.size)
 }
 
-/// Twice the area of every triangle at rest, along its normal, m².
+/// Twice the rest area of every triangle, along its normal, m².
 fn normals(mesh: &Mesh) -> impl Iterator<Item = Vector3<f64>> + '_ {
     let corners = mesh.triangles.iter().map(|triangle| triangle.map(|vertex| mesh.positions[vertex]));
     corners.map(|[a, b, c]| (b - a).cross(&(c - a)))
 }
 
-/// Unit normal of a flat mesh at rest, weft × warp. Summed over triangles it does not care how fine the mesh is.
+/// Unit normal of a flat mesh at rest, weft × warp. As a sum over triangles it does not depend on mesh density.
 pub fn rest_normal(mesh: &Mesh) -> Vector3<f64> {
     normals(mesh).sum::<Vector3<f64>>().normalize()
 }
 
-/// The weft direction in space at rest: area-weighted mean of ∂position/∂u.
+/// Weft direction in space at rest: area-weighted mean of ∂position/∂u.
 fn weft_direction(mesh: &Mesh, normal: &Vector3<f64>) -> Vector3<f64> {
     let mut sum = Vector3::zeros();
     for triangle in &mesh.triangles {
@@ -108,7 +108,7 @@ fn weft_direction(mesh: &Mesh, normal: &Vector3<f64>) -> Vector3<f64> {
     (sum - normal * sum.dot(normal)).normalize()
 }
 
-/// Turns a direction by quarter turns until it lies within 45° of the x axis; of two at 45° the one with y < 0.
+/// Rotates a direction by quarter turns to within 45° of the x axis; of two at 45° the one with y < 0.
 fn quarter_turn(side: Vector2<f64>) -> Vector2<f64> {
     let turns = [side, Vector2::new(-side.y, side.x), -side, Vector2::new(side.y, -side.x)];
     let better = |a: &Vector2<f64>, b: &Vector2<f64>| {
@@ -117,14 +117,14 @@ fn quarter_turn(side: Vector2<f64>) -> Vector2<f64> {
     turns.into_iter().max_by(better).unwrap_or(side)
 }
 
-/// The lowest and the highest corner of the box around points.
+/// Lowest and highest corner of the bounding box of points.
 pub fn bounds(points: impl Iterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
     points.fold([Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN)], |[low, high], p| {
         [low.inf(&p), high.sup(&p)]
     })
 }
 
-/// Andrew's monotone chain.
+/// Convex hull by Andrew's monotone chain.
 fn convex_hull(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let scale = points.iter().fold(0.0f64, |m, p| m.max(p.norm_squared()));
@@ -132,7 +132,7 @@ fn convex_hull(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
         let mut chain: Vec<Vector2<f64>> = Vec::new();
         for p in points {
             while let [.., a, b] = chain[..] {
-                // Points on a side, give or take rounding, are no corners.
+                // Points on a side, up to rounding, are not corners.
                 if (b - a).perp(&(p - a)) > 1e-9 * scale {
                     break;
                 }

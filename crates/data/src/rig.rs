@@ -1,7 +1,7 @@
-//! The virtual measurement rig: a known cloth in, a measurement set out.
+//! Virtual measurement rig: simulates the tests of a known fabric and returns a measurement set.
 //!
-//! The cloth is simulated on a finer mesh than the fit's, so that a fit is not tested on its own
-//! discretisation; what is "measured" is sampled from it on another mesh, and the instruments add their noise.
+//! The simulation uses a finer mesh than the fit, so that a fit is not tested on its own discretisation. The measured
+//! values are sampled on another mesh, with instrument noise added.
 //!
 //! ```text
 //! fabric.toml ──▶ simulation 61×61      ──▶ vertices of the measured mesh  + 0.075 mm ──▶ positions.npy
@@ -54,11 +54,11 @@ use truth::{State, Truth};
 const FRAME_TIME: f64 = 2.0;
 
 impl Rig {
-    /// Measures a known fabric. The result is the same on any number of threads, and that of a sequence does
-    /// not depend on which others are made.
+    /// Measures a known fabric. The result does not depend on the number of threads; that of a sequence does not
+    /// depend on the other sequences.
     ///
     /// # Errors
-    /// Settings or a fabric that cannot be; a frame without a stable equilibrium.
+    /// Invalid settings or fabric; a frame without a stable equilibrium.
     pub fn measure(&self, fabric: &KnownFabric) -> Result<MeasurementSet> {
         self.validate()?;
         let fabric = fabric.sample(self.sample);
@@ -114,7 +114,7 @@ impl Rig {
         Ok(())
     }
 
-    /// What the set says of its origin.
+    /// The `source` text of the set.
     fn source(&self, fabric: &KnownFabric) -> String {
         let [[a, b], [c, d]] = [self.nodes, self.measured];
         let mut source = format!("virtual rig: {} on {a}x{b} nodes, seen on {c}x{d}", fabric.model);
@@ -188,7 +188,7 @@ impl Rig {
     }
 }
 
-/// A frame as the instruments see it.
+/// Measures a frame with the instruments.
 fn observe(
     test: &Test,
     step: &Step,
@@ -205,7 +205,7 @@ fn observe(
     };
     let cords = state.holds.iter().enumerate().map(&mut cord).collect();
     let positions = shape.into_iter().map(|exact| instruments.position(exact)).collect();
-    // On a table there is no clip, though the sheet is moved.
+    // On a table there is no clip, although the sheet moves.
     let poses = state.motions[..grips.len()].to_vec();
     Frame {
         time: None,

@@ -1,7 +1,7 @@
-//! Writing that is never seen half done: into a temporary neighbour first, then renamed into place.
+//! Atomic output: content is written to a temporary neighbour, then renamed into place.
 //!
-//! Whatever stops the program, the path holds the old content or the new one. A hidden temporary neighbour may stay
-//! behind if the program is killed; that of a folder is cleared by the next run that writes it.
+//! After any interruption the path holds either the old or the new content. A killed program may leave a hidden
+//! temporary neighbour behind; that of a folder is cleared by the next run that writes it.
 
 mod folder;
 mod journal;
@@ -17,10 +17,10 @@ use folder::{existing_target, parent, sync_folder};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes a whole file, replacing the old one if there is one. A link is followed: what it leads to is replaced.
+/// Writes a whole file and replaces an existing one. A link is followed: its target is replaced.
 ///
 /// # Errors
-/// The path names something that is not a regular file, or the operating system refuses.
+/// A path to something other than a regular file; a failed system call.
 pub fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
     let target = existing_target(path)?;
     if target.as_ref().is_some_and(|target| !target.is_file()) {
@@ -42,17 +42,17 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<()> {
     sync_folder(&folder).map_err(failed)
 }
 
-/// Builds a whole folder beside the old one, then puts it in its place. The folders above it are made.
+/// Builds a folder beside the existing one, then puts it in its place. Creates missing parent folders.
 ///
-/// If `build` fails, what it made is removed and the old folder stays as it was.
+/// If `build` fails, its output is removed and the existing folder stays unchanged.
 ///
 /// # Errors
-/// Those of `build` and of [`OutputFolder::claim`]; the operating system refuses.
+/// Those of `build` and of [`OutputFolder::claim`]; a failed system call.
 pub fn replace_folder(path: &Path, build: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     OutputFolder::claim(path)?.replace(build)
 }
 
-/// Refuses a link where a file is to be written into a folder of results: only the path that somebody names is followed.
+/// Refuses a link as the target of a file in a results folder: only the path given by the user is followed.
 ///
 /// # Errors
 /// A link.
@@ -63,7 +63,7 @@ pub fn refuse_link(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Hidden, and with the usual permissions: those that the user's mask leaves.
+/// A hidden file with default permissions, as left by the user's mask.
 fn temporary() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".").suffix(".tmp");

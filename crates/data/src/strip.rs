@@ -1,4 +1,4 @@
-//! A tensile machine's table as a stretch sequence: a strip between two clamps, one of which moves.
+//! Imports a table of a tensile machine as a stretch sequence: a strip between two clamps, one of which moves.
 //!
 //! ```text
 //!   weft, bias                            warp   y
@@ -9,8 +9,9 @@
 //!           ‹── gauge ───›                         ‹width›
 //! ```
 //!
-//! Frame 0 is the strip at rest, the clamps its free length apart and no force known. Every row taken is one frame
-//! more: the moving clamp shifted along the pull, the load cell's reading as the cord on it. No shape was measured.
+//! Frame 0 is the strip at rest, with the clamps at the free length and no known force. Every selected row adds one
+//! frame: the moving clamp shifted along the pull, and the load cell reading as the force of its cord. No shapes are
+//! measured.
 //!
 //! ```text
 //! force F = reading − zero       separation = gauge length + displacement − compliance · F
@@ -42,34 +43,34 @@ use rows::{SEPARATION, chosen_rows};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A machine that lengthens by more than this share of the extension leaves little of it to the strip.
+/// Largest plausible share of the extension due to machine compliance.
 const MOST_COMPLIANT: f64 = 0.3;
-/// The column of branches that is looked for if none is named.
+/// Default name of the branch column.
 const BRANCH: &str = "branch";
 
-/// A strip test that was read.
+/// An imported strip test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
-    /// The sequence: the rest, then a frame a row.
+    /// The sequence: rest state, then one frame per row.
     pub sequence: Sequence,
-    /// How far apart the clamps are at rest, m.
+    /// Clamp distance at rest, m.
     pub free_length: f64,
-    /// The row that each frame comes from, the first below the header 1; 0 for the rest.
+    /// Source row of each frame, the first below the header is 1; 0 for the rest state.
     rows: Vec<usize>,
-    /// The branch of each frame.
+    /// Branch of each frame.
     branches: Vec<usize>,
-    /// The rows that repeat the one before them.
+    /// Rows that repeat the previous one.
     repeats: Vec<usize>,
     /// Name of the table.
     table: String,
-    /// Of the way that the machine went, the share that its own lengthening was taken to be.
+    /// Share of the clamp travel attributed to machine compliance.
     compliant: f64,
 }
 
 impl Strip {
-    /// Leaves out what was read after the strip broke, and tells of all that seems wrong with it.
+    /// Drops readings after a breakage and reports everything suspicious.
     ///
-    /// * `areal_density` — of the cloth, kg/m², if it is known: the size of the forces is judged by it
+    /// * `areal_density` — of the cloth, kg/m²; if known, the magnitude of the forces is checked
     pub fn inspect(&mut self, areal_density: Option<f64>) -> Vec<Notice> {
         let counted = format!("{} row", self.table);
         let mut notices: Vec<Notice> = self.repeated(&counted).into_iter().chain(self.compliance()).collect();
@@ -79,12 +80,12 @@ impl Strip {
         notices
     }
 
-    /// The rows that are taken, the first below the header 1.
+    /// Selected rows; the first below the header is 1.
     pub fn rows(&self) -> &[usize] {
         &self.rows[1..]
     }
 
-    /// The branches of those rows, in their order.
+    /// Branches of those rows, in order.
     pub fn branches(&self) -> Vec<usize> {
         let mut branches = self.branches.clone();
         branches.dedup();
@@ -96,8 +97,8 @@ impl Strip {
             Notice::doubt(
                 &self.sequence.name,
                 self.table.clone(),
-                format!("a compliance that takes off {:.0} % of the extension", 100.0 * self.compliant),
-                "a machine that hardly gives beside the strip: its unit, metres per newton, and how it was measured",
+                format!("a compliance that accounts for {:.0} % of the extension", 100.0 * self.compliant),
+                "a machine much stiffer than the strip: check the unit, metres per newton, and the measurement of the compliance",
             )
         })
     }
@@ -110,20 +111,20 @@ impl Strip {
             &self.sequence.name,
             format!("{counted} {first}"),
             format!("{count} {rows} that {repeat} the one before"),
-            "each reading once: the others are left out, since they tell nothing new",
+            "each reading once: the repeated rows are left out",
         ))
     }
 }
 
-/// Reads a tensile machine's table. Columns that are not asked for may hold anything.
+/// Reads a table of a tensile machine. Columns that are not requested may contain anything.
 ///
-/// The phase of a branch follows from where it begins and ends; its cycle is half its number. A row that repeats the one
-/// before it is left out.
+/// The phase of a branch follows from its ends; its cycle is half its number. A row that repeats the previous one is
+/// dropped.
 ///
 /// # Errors
-/// A setting outside what it may be; not a table; a column that is missing or whose unit is not known; a number that
-/// is not finite; clamps less than half a gauge length apart or more than ten; rows or branches that do not exist; a
-/// preload that no loading reaches.
+/// A setting outside its range; a file that is not a table; a missing column or unknown unit; a number that is not
+/// finite; a clamp distance below half or above ten gauge lengths; rows or branches that do not exist; a preload that
+/// no loading reaches.
 pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
     test.validate()?;
     let table = Table::read_columns(path, &test.columns())?;
@@ -132,9 +133,8 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
     let (taken, repeats) = without_repeats(taken(&table, test, &readings)?);
     let length = free_length(&table, test, &readings)?;
     if !taken.iter().any(|reading| reading.separation > length) {
-        let found = format!("no clamps farther apart than the free length, {length} m");
-        let expected =
-            "an extension that grows where the strip is pulled: the other sign, or another free length";
+        let found = format!("no clamp distance above the free length, {length} m");
+        let expected = "an extension that grows with the pull: the other sign, or another free length";
         return Err(table.incomplete(&test.extension.column().name, found, expected));
     }
     let farthest = taken
@@ -146,7 +146,7 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
         return Err(Error::Setting {
             field: "zero",
             found: test.zero.to_string(),
-            expected: format!("a reading with nothing in the clamps: at most the largest force, {largest} N"),
+            expected: format!("a reading without load: at most the largest force, {largest} N"),
         });
     }
     let (mesh, pull) =
@@ -188,7 +188,7 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
     })
 }
 
-/// All rows that may be looked at, with their branches.
+/// All candidate rows with their branches.
 fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
     let (column, quantity) = match &test.extension {
         Extension::Separation(column) | Extension::Displacement(column) => (column, Quantity::Length),
@@ -232,7 +232,7 @@ fn readings(table: &Table, test: &StripTest) -> Result<Vec<Reading>> {
     Ok(readings)
 }
 
-/// How far apart the clamps are where the strip is straight and free, m.
+/// Clamp distance of the straight, unloaded strip, m.
 fn free_length(table: &Table, test: &StripTest, readings: &[Reading]) -> Result<f64> {
     let force = match test.free_length {
         FreeLength::Gauge => return Ok(test.gauge),
@@ -242,12 +242,12 @@ fn free_length(table: &Table, test: &StripTest, readings: &[Reading]) -> Result<
     let loading = readings.chunk_by(|a, b| a.branch == b.branch).next().unwrap_or_default();
     let length = pull::free_length(loading, force);
     length.filter(|length| SEPARATION.contains(&(length / test.gauge))).ok_or_else(|| {
-        let found = format!("a first loading that does not lead from zero through {force} N");
-        table.incomplete(&test.force.name, found, "a preload that it passes, or the free length itself")
+        let found = format!("a first loading that does not pass from zero through {force} N");
+        table.incomplete(&test.force.name, found, "a preload within its range, or the free length itself")
     })
 }
 
-/// Rows that say the same as the one before them are one reading, and their noise is one.
+/// Merges rows that repeat the previous one: they are one reading with one noise.
 fn without_repeats(rows: Vec<&Reading>) -> (Vec<&Reading>, Vec<usize>) {
     let mut repeats = Vec::new();
     let mut kept: Vec<&Reading> = Vec::with_capacity(rows.len());
@@ -261,7 +261,7 @@ fn without_repeats(rows: Vec<&Reading>) -> (Vec<&Reading>, Vec<usize>) {
     (kept, repeats)
 }
 
-/// The rows of the branches asked for, thinned out.
+/// Rows of the requested branches, thinned out.
 fn taken<'a>(table: &Table, test: &StripTest, readings: &'a [Reading]) -> Result<Vec<&'a Reading>> {
     let mut seen: BTreeMap<usize, usize> = BTreeMap::new();
     let mut taken = Vec::new();

@@ -26,7 +26,7 @@ fuzz_target!(|bytes: &[u8]| {
         let negative = model.negative_strain(component, compression);
         let Some(curve) = answer(file.curve(component, model, negative), bytes) else { continue };
         evaluate(&curve);
-        // A table of the curve itself is read as that curve, but for the last digits.
+        // A table written from the curve reads back as that curve, up to rounding.
         let again = SAMPLE.put("again.csv", file.with_points(&curve).to_csv().as_bytes());
         let again = CurveFile::read(&again).expect("what was written can be read");
         let again = again.curve(component, model, negative).expect("its own points make a curve");

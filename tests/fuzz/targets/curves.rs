@@ -1,6 +1,6 @@
-//! Control points of any kind → a curve → check → repair → a few steps of a small sheet.
+//! Arbitrary control points → a curve → check → repair → a few steps of a small sheet.
 //!
-//! The first byte says how the rest is read; a pair of numbers is a control point.
+//! The first byte selects the decoding of the rest; a pair of numbers is a control point.
 
 #![no_main]
 
@@ -16,7 +16,7 @@ use cloth_sim::samples::{self, GRAVITY, SIDE, Sample};
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Vector3;
 
-/// What the sheet has besides the curve: stretch and shear in N/m, bending in N·m.
+/// Curves of the other components: stretch and shear in N/m, bending in N·m.
 const REST: [f64; 3] = [1000.0, 100.0, 1e-5];
 const POINTS: usize = 10;
 const STEPS: usize = 5;
@@ -69,7 +69,7 @@ fuzz_target!(|bytes: &[u8]| {
     simulate(&curve, model, components, step);
 });
 
-/// A sheet of 0.1 m swings down from two corners.
+/// Lets a sheet of 0.1 m swing down from two corners.
 fn simulate(curve: &StiffnessCurve, model: Model, components: &[Component], step: f64) {
     let rest = samples::fabric(model, REST).expect("constants");
     let curves = rest.components().filter_map(|component| {
@@ -97,7 +97,7 @@ fn simulate(curve: &StiffnessCurve, model: Model, components: &[Component], step
     }
 }
 
-/// Three bytes a number: ± 0.00 to 2.55 times a power of ten from 1e-15 to 1e15; of the exponent 31 stands for 0.
+/// Three bytes per number: ± 0.00 to 2.55 times a power of ten from 1e-15 to 1e15; exponent 31 encodes 0.
 fn decades(bytes: &[u8]) -> Vec<f64> {
     let number = |bytes: &[u8]| {
         let exponent = i32::from(bytes[0] & 31) - 15;
@@ -108,7 +108,7 @@ fn decades(bytes: &[u8]) -> Vec<f64> {
     bytes.chunks_exact(3).map(number).collect()
 }
 
-/// Eight bytes a number, as it stands: NaN, infinities and numbers without leading digits too.
+/// Eight bytes per number, unchanged, including NaN, infinities and subnormal numbers.
 fn doubles(bytes: &[u8]) -> Vec<f64> {
     bytes.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect()
 }

@@ -1,4 +1,4 @@
-//! `report.json`, from which a page is written again.
+//! `report.json`, from which a page is rebuilt.
 
 #![no_main]
 

@@ -26,7 +26,7 @@ fuzz_target!(|bytes: &[u8]| {
     assert!(scene.guided.iter().all(|guided| guided.node < nodes));
 });
 
-/// True of a sheet that a scene may have, but of so many nodes that a mesh of them takes a hundred other executions' time.
+/// True for a valid sheet with so many nodes that its mesh takes the time of a hundred other executions.
 fn takes_long(text: &str) -> Option<bool> {
     let scene: toml::Table = text.parse().ok()?;
     let [grid, disc] = ["grid", "disc"].map(|shape| scene.get("sheet")?.get(shape));

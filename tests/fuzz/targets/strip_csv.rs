@@ -1,4 +1,4 @@
-//! A tensile machine's table of a strip, the first two columns of which are extension and force.
+//! A tensile machine's table of a strip, with extension and force in the first two columns.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! `test.toml`, of a strip that is pulled and of one that bends.
+//! `test.toml` of a pulled strip and of a bent one.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Reading a curve's table.
+//! Reads a curve table.
 
 use super::{CurveFile, ENGINEERING, MEASURES, columns};
 use crate::error::Result;
@@ -7,12 +7,12 @@ use cloth_sim::strain_measure::StrainMeasure;
 use std::path::Path;
 
 impl CurveFile {
-    /// Reads a table: `strain` and `stress_n_per_m`, `curvature_per_m` and `moment_n`, or those of another measure
-    /// ([`columns`]); with them, if they are there, the other columns that fit-cloth writes of a curve.
+    /// Reads a table of `strain` and `stress_n_per_m`, of `curvature_per_m` and `moment_n`, or of another measure
+    /// ([`columns`]), with any of the optional columns that fit-cloth writes for a curve.
     ///
     /// # Errors
-    /// Not a table of such columns; columns that contradict each other; a field that is no finite number (of
-    /// a band it may be empty); strains that do not ascend; no row.
+    /// A table without such columns; columns that contradict each other; a field that is not a finite number (band
+    /// fields may be empty); strains that do not ascend; no rows.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Table::read(path)?;
         let names = |measure: &Option<StrainMeasure>| [columns(*measure)[0], columns(*measure)[2]];
@@ -24,14 +24,14 @@ impl CurveFile {
             return Err(table.bad_header("header", table.names(), expected));
         };
         let [axis, stiffness, stress, low, high] = columns(measure);
-        // Other measures have none beside their own.
+        // Other measures have no second pair of columns.
         let beside = if measure == Some(StrainMeasure::Green) { ENGINEERING } else { [axis, stress] };
         let ([x, y], [k, a, b, e, p]) =
             table.require([axis, stress], [stiffness, low, high, beside[0], beside[1]])?;
         let column = |place: usize| -> Result<Vec<f64>> {
             (0..table.rows()).map(|row| table.number(row, place)).collect()
         };
-        // A row that the data do not see has no band, on neither side.
+        // A row not covered by data has no band on either side.
         let sides: Vec<usize> = [a, b].into_iter().flatten().collect();
         let cells = |place: usize| -> Result<Vec<f64>> {
             let empty =

@@ -49,7 +49,7 @@ fn rows_below_zero_must_be_what_the_model_makes_of_those_above() {
     assert_eq!(shear(-12.05).unwrap().strains(), [0.0, 0.1]);
     let error = shear(-12.5).unwrap_err().to_string();
     assert!(error.contains(":2 stress_n_per_m: found -12.5 at -0.1") && error.contains("odd"), "{error}");
-    // Tables of a fit may step over zero.
+    // Tables of a fit may have no row at zero.
     let text = "strain,stress_n_per_m\n-0.01,-1.015\n0.01,1\n0.03,3\n";
     let found = weft(text).unwrap();
     assert_eq!((found.strains(), found.stiffnesses()[0]), (&[0.0, 0.01, 0.03][..], 100.0));
@@ -159,7 +159,7 @@ fn control_points_of_another_curve_become_rows_above_those_below_zero() {
     assert_eq!(file.strain_per_unit(), 1.0);
 }
 
-/// A strip pulled by a tenth and by a fifth: nominal stresses of 200 and 600 N/m.
+/// A strip pulled to 10 % and 20 %: nominal stresses of 200 and 600 N/m.
 const GREEN: &str = "green_strain,pk2_stress_n_per_m\n0,0\n0.105,181.8181818181818\n0.22,500\n";
 
 #[test]
@@ -174,12 +174,12 @@ fn beside_green_strain_stand_engineering_strain_and_nominal_stress() {
         let found: Vec<f64> = row.split(',').skip(2).map(|field| field.parse().unwrap()).collect();
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12 * b.max(1.0)), "{row}");
     }
-    // They are read back; after an edit of one column alone they contradict it.
+    // The columns read back; editing only one of them makes the table contradict itself.
     let again = read(&text).unwrap();
     assert_eq!((&again.strains, &again.stresses), (&file.strains, &file.stresses));
     let error = read(&text.replace(",500,", ",550,")).unwrap_err().to_string();
     assert!(error.contains(":4 nominal_stress_n_per_m: found 600") && error.contains("660"), "{error}");
-    // Nothing is left of a length at a strain of −1/2.
+    // At a Green strain of −1/2 the length is zero.
     let folded = read("green_strain,pk2_stress_n_per_m\n-0.5,-1\n0,0\n0.5,1\n").unwrap();
     assert!(folded.to_csv().starts_with("green_strain,pk2_stress_n_per_m\n"));
 }

@@ -1,7 +1,7 @@
-//! The table's edge against the place where a sheet begins to hang.
+//! Compares the table edge with the line where the sheet starts to hang.
 //!
 //! ```text
-//! height  ●──●──●__                from the first line below the table and the next one:
+//! height  ●──●──●__                from the first two lines below the table:
 //!                  ●               drop d = ½ κ (r − r₀)², so that √d is straight in r and zero at the edge r₀
 //!                    ╲●
 //! ```
@@ -11,22 +11,23 @@ use crate::frame::{Fabric, Sequence};
 use crate::measure::median;
 use crate::notice::{Notice, Severity};
 
-/// A line is below the table by more than so many standard deviations of its mean, and by a tenth of a millimetre at least,
-/// which tables are not plane to.
+/// A line is below the table if it is lower by this many standard deviations of its mean and by at least 0.1 mm, the
+/// flatness of a table.
 const BELOW: f64 = 6.0;
 const PLANE: f64 = 1e-4;
 
-/// Rigidity goes with the third power of the overhang: an edge off by a tenth of it is off by 30 %.
+/// Rigidity scales with the cube of the overhang: an edge error of a tenth of it is an error of 30 %.
 const REFUSED: f64 = 0.1;
 
-/// An edge is off if it is by more than half of what the lines are apart, which several frames tell it to, and by more than
-/// this, m.
+/// An edge is misplaced if it is off by more than half the line spacing, which several frames resolve, and by more
+/// than this, m.
 const LEAST: f64 = 1e-3;
 
-/// Cloth lies so far above or below the edge's height at most, m, beside its thickness: tables and axes are off a little.
+/// Largest height difference between flat cloth and edge, m, in addition to the thickness: tables and axes are
+/// slightly off.
 const LEVEL: f64 = 2e-3;
 
-/// Doubts, or refuses, a sequence whose sheet begins to hang elsewhere than at the table's edge, or does not lie on the table.
+/// Doubts or refuses a sequence whose sheet starts to hang away from the table edge, or does not lie on the table.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(table) = sequence.table else { return };
     let Some(up) = up(&table, &sequence.gravity) else { return };
@@ -48,7 +49,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
             &sequence.name,
             "test.toml table.edge_point_m",
             format!(
-                "cloth that lies {:.1} mm {} the edge on its table (median of {frames} frames)",
+                "cloth that lies {:.1} mm {} the edge of its table (median of {frames} frames)",
                 1e3 * level.abs(),
                 if level > 0.0 { "above" } else { "below" }
             ),
@@ -65,39 +66,39 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         sequence: sequence.name.clone(),
         place: "test.toml table.edge_point_m".into(),
         found: format!(
-            "cloth {seen}: it begins to hang {:.1} mm {} it (median of {frames} frames; lines of vertices are {:.1} mm \
+            "cloth {seen}: it starts to hang {:.1} mm {} it (median of {frames} frames; lines of vertices are {:.1} mm \
              apart)",
             1e3 * off.abs(),
             if off < 0.0 { "before" } else { "past" },
             1e3 * apart
         ),
         expected: format!(
-            "an edge where cloth begins to hang: {:.1} mm {} along outward, in the axes of positions.npy",
+            "an edge where the cloth starts to hang: {:.1} mm {} along outward, in the axes of positions.npy",
             1e3 * off.abs(),
             if off < 0.0 { "back" } else { "on" }
         ),
     });
 }
 
-/// Where a sheet begins to hang.
+/// The start of the overhang.
 struct Begin {
-    /// Past the edge, m.
+    /// Distance past the edge, m.
     outward: f64,
-    /// How much hangs, m.
+    /// Overhanging length, m.
     length: f64,
-    /// Height of what lies on the table above the edge, m.
+    /// Height of the flat part above the edge, m.
     level: f64,
-    /// The distance of the lines there, m.
+    /// Line spacing there, m.
     apart: f64,
 }
 
 impl Begin {
     fn of(lines: &[Line], noise: f64) -> Option<Self> {
-        // The level of the table is that of the lines farthest back.
+        // The lines farthest back define the level of the table.
         let back = &lines[..(lines.len() / 8).max(2).min(lines.len())];
         let level = median(back.iter().map(|line| line.height).collect())?;
         let below = |line: &Line| f64::max(BELOW * noise * line.error, PLANE) < level - line.height;
-        // From the tip inward, so that a single line on the table does not count.
+        // From the tip inward, so that a single low line on the table is ignored.
         let first = lines.iter().rposition(|line| !below(line))? + 1;
         let [flat, hanging] = [&lines[..first], &lines[first..]];
         let [a, b] = [hanging.first()?, hanging.get(1)?];
@@ -107,7 +108,7 @@ impl Begin {
             return None;
         }
         let begin = a.rest - root(a) * (b.rest - a.rest) / steeper;
-        // Cloth that lies flat is as far out as at rest, but for where it was pushed.
+        // Flat cloth keeps its rest distances, apart from the push.
         let pushed = median(flat.iter().map(|line| line.outward - line.rest).collect()).unwrap_or(f64::NAN);
         let last = hanging[hanging.len() - 1];
         Some(Self { outward: begin + pushed, length: last.rest - begin, level, apart: b.rest - a.rest })

@@ -1,20 +1,22 @@
-//! Points that a full-field system lost and wrote down all the same: at the origin, or where they lay at rest.
+//! Points that a full-field system lost but still recorded: at the origin or at their rest position.
 
 use crate::frame::{Fabric, Sequence, is_seen};
 use crate::notice::Notice;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A vertex that did not move is lost if its neighbours moved by this share of the edges to them: no cloth is strained so.
+/// A vertex that did not move is lost if its neighbours moved by this share of their edge length; cloth does not
+/// strain that far.
 const LEFT_BEHIND: f64 = 0.25;
 
-/// A vertex is lost if most of its edges are so many times as long as the frame's others are, by the lengths at rest.
+/// A vertex is lost if most of its edges are this many times longer, relative to rest, than the other edges of the
+/// frame.
 const TORN: f64 = 3.0;
 
-/// So many are named.
+/// Number of lost points listed by name.
 const NAMED: usize = 5;
 
-/// Marks lost points as unobserved, and says which they were.
+/// Marks lost points as unobserved and lists them.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let surroundings = Surroundings::of(sequence);
     let mut lost = Lost::default();
@@ -41,13 +43,13 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
         notices.push(Notice::doubt(
             &sequence.name,
             "positions.npy",
-            format!("no vertex that was followed in any of {measured} frames"),
-            "shapes, which show whether the clips stood where clips.csv has them; without positions.npy if there are none",
+            format!("no vertex tracked in any of {measured} frames"),
+            "shapes, which verify the clip poses of clips.csv; omit positions.npy if there are none",
         ));
     }
 }
 
-/// What was lost, in all frames.
+/// Lost points of all frames.
 #[derive(Default)]
 struct Lost {
     coincident: usize,
@@ -60,9 +62,9 @@ struct Lost {
 impl Lost {
     fn notice(&self, sequence: &str) -> Notice {
         let ways = [
-            (self.coincident, "at one and the same place as others"),
-            (self.left_behind, "where they lay at rest, away from their neighbours"),
-            (self.torn, "far away from their neighbours"),
+            (self.coincident, "at the same place as others"),
+            (self.left_behind, "at their rest position, away from their neighbours"),
+            (self.torn, "far from their neighbours"),
         ];
         let ways: Vec<String> = ways
             .iter()
@@ -81,32 +83,32 @@ impl Lost {
             sequence,
             "positions.npy",
             format!(
-                "points that were not followed, in {} frames: {} ({}{more})",
+                "lost points, in {} frames: {} ({}{more})",
                 frames.len(),
                 ways.join(", "),
                 first.join(", ")
             ),
-            "NaN where a vertex was not observed; they count as that",
+            "NaN where a vertex was not observed; these points count as unobserved",
         )
     }
 }
 
-/// Vertices that share their place with another to the last bit: cloth does not.
+/// Vertices at exactly the same position as another one, which cloth cannot have.
 fn coincident(positions: &[Vector3<f64>]) -> BTreeSet<usize> {
     let mut at: BTreeMap<[u64; 3], Vec<usize>> = BTreeMap::new();
     let seen = positions.iter().enumerate().filter(|(_, place)| is_seen(place));
     for (vertex, place) in seen {
-        // −0 is 0.
+        // −0 equals 0.
         at.entry(<[f64; 3]>::from(*place).map(|c| (c + 0.0).to_bits())).or_default().push(vertex);
     }
     at.into_values().filter(|vertices| vertices.len() > 1).flatten().collect()
 }
 
-/// Every vertex's neighbours in the rest mesh.
+/// Neighbours of every vertex in the rest mesh.
 struct Surroundings {
     rest: Vec<Vector3<f64>>,
     neighbours: Vec<BTreeSet<usize>>,
-    /// Held by a clip, whose pose tells where it is.
+    /// Held by a clip, whose pose gives its position.
     held: Vec<bool>,
     noise: f64,
 }
@@ -126,7 +128,7 @@ impl Surroundings {
         Self { rest, neighbours, held, noise: sequence.position_noise() }
     }
 
-    /// Neighbours that were seen and are not lost.
+    /// Neighbours that were observed and are not lost.
     fn seen<'a>(
         &'a self,
         vertex: usize,
@@ -137,8 +139,7 @@ impl Surroundings {
         neighbours.filter(|other| is_seen(&positions[*other]) && !lost.contains(other))
     }
 
-    /// Vertices that stand where they lay at rest, to the last bit of single or double precision, though their neighbours
-    /// moved away.
+    /// Vertices exactly at their rest position, in single or double precision, although their neighbours moved away.
     fn left_behind(&self, positions: &[Vector3<f64>], lost: &BTreeSet<usize>) -> BTreeSet<usize> {
         let stays = |vertex: usize| {
             let (now, rest) = (positions[vertex], self.rest[vertex]);
@@ -148,7 +149,7 @@ impl Surroundings {
         let moved_away = |&vertex: &usize| {
             let others: Vec<usize> =
                 self.seen(vertex, positions, lost).filter(|other| !resting.contains(other)).collect();
-            // What rests in one piece, as on a table, is at rest.
+            // A connected region at its rest position, as on a table, is at rest.
             let alone = 2 * others.len() > self.neighbours[vertex].len();
             let mean = |of: &dyn Fn(usize) -> Vector3<f64>| {
                 others.iter().map(|&other| of(other)).sum::<Vector3<f64>>() / others.len() as f64
@@ -161,11 +162,11 @@ impl Surroundings {
         resting.iter().copied().filter(|&v| !self.held[v] && !lost.contains(&v)).filter(moved_away).collect()
     }
 
-    /// Vertices that are torn from most of their neighbours.
+    /// Vertices torn from most of their neighbours.
     fn torn(&self, positions: &[Vector3<f64>], lost: &BTreeSet<usize>) -> BTreeSet<usize> {
         let stretch = |vertex: usize, other: usize| {
             let rest = (self.rest[other] - self.rest[vertex]).norm();
-            // Noise lengthens what is short.
+            // Noise lengthens short edges.
             let now = ((positions[other] - positions[vertex]).norm() - 6.0 * self.noise).max(0.0);
             now / rest
         };

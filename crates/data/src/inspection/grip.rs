@@ -1,9 +1,9 @@
-//! Clips that hold part of a side, or list part of what they hold.
+//! Clips that hold only part of a side, or list only part of the vertices they hold.
 //!
 //! ```text
 //!  ┃●──●──●       listed
 //!  ┃●──●──●
-//!   ○──●──●  d    beside: a free one lags by about ε d along the pull, one that the clip holds does not
+//!   ○──●──●  d    beside it: a free vertex lags by about ε d along the pull, a held one does not
 //! ```
 
 use crate::frame::{Fabric, Sequence, is_seen};
@@ -13,20 +13,20 @@ use crate::notice::Notice;
 use crate::rectangle::{Rectangle, bounds};
 use nalgebra::Vector2;
 
-/// A vertex that lags by less than this share of ε d is held; a free one lags by half of it at least.
+/// A vertex that lags by less than this share of ε d is held; a free vertex lags by at least half of ε d.
 const HELD: f64 = 0.25;
-/// The lags are looked at where together they would be so many times the noise.
+/// Lags are evaluated if their expected sum exceeds this many times the noise.
 const SURE: f64 = 10.0;
-/// Vertices on one line lie so near it, as a share of the specimen: rounding.
+/// Vertices within this share of the specimen size lie on one line; the rest is rounding.
 const TIE: f64 = 1e-6;
-/// Fewer vertices may be cut askew.
+/// Fewer vertices may result from an oblique cut.
 const FEWEST: usize = 3;
 
-/// A clip that grips this share of its side grips all of it.
+/// A clip that grips this share of its side counts as gripping all of it.
 const WHOLE: f64 = 0.98;
 
-/// Doubts a stretched specimen whose clips do not hold whole sides: with 83 % of a side a fit that leaves shear out makes denim
-/// 12 % too stiff. More so where a clip holds more than it says.
+/// Doubts a stretched specimen whose clips do not hold whole sides. With 83 % of a side, a fit that ignores shear
+/// makes denim 12 % too stiff; the error grows if a clip holds more than it lists.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let stretched = sequence.kind.holding() == Holding::Strip;
     if stretched && sequence.clips.len() == 2 {
@@ -48,7 +48,7 @@ fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
     let tie = TIE * between.norm();
     let alongside = |place: &Vector2<f64>| place[pull] >= low[pull] - tie && place[pull] <= high[pull] + tie;
     let beside = flat.iter().enumerate().filter(|(_, place)| alongside(place)).map(|(vertex, place)| {
-        // What is farther off than half the way to the other clip lags as that does.
+        // Beyond half the distance to the other clip the lag no longer grows.
         let apart = f64::max(low[across] - place[across], place[across] - high[across]);
         (vertex, apart.min(0.5 * between.norm()))
     });
@@ -69,7 +69,7 @@ fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
     }
     let told = beside.len() >= FEWEST && free.sqrt() >= SURE * sequence.position_noise();
     let more = match told && both <= HELD * free {
-        true => format!(", and {} vertices beside them that were seen to move as it does", beside.len()),
+        true => format!(", and {} vertices beside them that move with it", beside.len()),
         false => String::new(),
     };
     let name = &sequence.clips[clip].name;
@@ -77,7 +77,7 @@ fn holds_part(sequence: &Sequence, clip: usize) -> Option<Notice> {
         &sequence.name,
         "test.toml clips.vertices",
         format!("vertices of clip {name} along {:.0} % of its side{more}", 100.0 * share),
-        "all that it holds, and that the whole side: cloth beside a clip is sheared, which a fit of stretch leaves out, so \
-         that the curve comes out too stiff",
+        "all vertices it holds, along the whole side: cloth beside a clip is sheared, which a stretch fit ignores, so \
+         that the curve becomes too stiff",
     ))
 }

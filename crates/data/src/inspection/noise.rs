@@ -1,9 +1,9 @@
-//! The noise that is declared.
+//! The declared noise.
 
 use crate::frame::{Fabric, Sequence};
 use crate::notice::Notice;
 
-/// Refuses a noise by which nothing can be weighed. Files cannot hold one; a caller's set can.
+/// Refuses a noise value that cannot weight residuals. Files cannot contain one, but a set built in memory can.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(noise) = sequence.noise else { return };
     for (field, deviation) in [("position_m", noise.position_m), ("force_n", noise.force_n)] {

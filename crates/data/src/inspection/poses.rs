@@ -1,23 +1,23 @@
-//! Poses of clips against the vertices that they hold: where they are, and how far they move.
+//! Compares clip poses with the vertices that the clips hold: position and distance moved.
 
 use crate::frame::{Fabric, Sequence, is_seen};
 use crate::measure::{mean, moved};
 use crate::notice::Notice;
 use nalgebra::Vector3;
 
-/// Vertices may be seen so many times the noise of a coordinate away: √3 is noise itself, and a pose has some too.
+/// Allowed distance in multiples of the coordinate noise: √3 is noise alone, and a pose has noise of its own.
 const NOISE: f64 = 6.0;
 
-/// And by this share of the specimen's size: less changes a strain by little.
+/// Allowed distance as a share of the specimen size; less hardly changes a strain.
 const SHARE: f64 = 2e-3;
 
-/// Poses and shapes may move a clip by lengths that differ by this share, which no curve feels, and by so many standard
-/// deviations.
+/// Allowed relative difference between the clip motion in poses and in shapes, which changes no curve; a number of
+/// standard deviations is allowed in addition.
 const SAME_MOTION: f64 = 5e-3;
 const SURE: f64 = 4.0;
 
-/// Refuses a sequence in which a clip's vertices were seen elsewhere than its poses put them; doubts one in which they were
-/// seen to move farther, or less far.
+/// Refuses a sequence in which the vertices of a clip were observed away from its poses. Doubts one in which they
+/// moved farther, or less far, than the poses.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     notices.extend(elsewhere(sequence).or_else(|| motion(sequence)));
 }
@@ -57,7 +57,7 @@ fn elsewhere(sequence: &Sequence) -> Option<Notice> {
     ))
 }
 
-/// The length of the clips' motion as seen over that of their poses: the slope of one over the other, through all frames.
+/// Ratio of the observed clip motion to that of the poses: the slope of one over the other through all frames.
 fn motion(sequence: &Sequence) -> Option<Notice> {
     let (mut both, mut posed, mut variance) = (0.0, 0.0, 0.0);
     for clip in 0..sequence.clips.len() {
@@ -76,22 +76,22 @@ fn motion(sequence: &Sequence) -> Option<Notice> {
             &sequence.name,
             "clips.csv against positions.npy",
             format!(
-                "vertices in the clips that were seen to move {:.1} % {} than their poses",
+                "clip vertices that moved {:.1} % {} than their poses",
                 100.0 * off.abs(),
                 if off > 0.0 { "farther" } else { "less far" }
             ),
-            "one scale: poses and shapes of one calibration, in metres",
+            "the same scale: poses and shapes from one calibration, in metres",
         )
     })
 }
 
-/// Where the middle of a clip's vertices was seen, and where its pose puts it.
+/// Mean of a clip's vertices, as observed and as given by its pose.
 struct Middles {
     places: [Vector3<f64>; 2],
     vertices: usize,
 }
 
-/// Of the vertices that were seen; `None` of none.
+/// Over the observed vertices; `None` if there are none.
 fn middles(sequence: &Sequence, frame: usize, clip: usize) -> Option<Middles> {
     let frame = &sequence.frames[frame];
     let (positions, pose) = (frame.positions.as_ref()?, frame.poses.get(clip)?);
@@ -104,7 +104,7 @@ fn middles(sequence: &Sequence, frame: usize, clip: usize) -> Option<Middles> {
     (!seen.is_empty()).then_some(Middles { places, vertices: seen.len() })
 }
 
-/// Root mean square distance of a clip's vertices, as seen, from where its pose puts them, m; `None` where none was seen.
+/// Root mean square distance between the observed vertices of a clip and its pose, m; `None` if none was observed.
 fn apart(sequence: &Sequence, frame: usize, clip: usize) -> Option<f64> {
     let frame = &sequence.frames[frame];
     let (positions, pose) = (frame.positions.as_ref()?, frame.poses.get(clip)?);

@@ -1,4 +1,4 @@
-//! Sheets off a table from the side: lines along the edge, from the one farthest back on the table to the tip.
+//! Side view of a sheet on a table: lines along the edge, ordered from the rear line on the table to the tip.
 //!
 //! ```text
 //!  height │ ●──●──●──●          a line is the mean of the vertices in a slice of the rest mesh
@@ -10,19 +10,19 @@ use crate::frame::{Sequence, Table, is_seen};
 use crate::measure::mean;
 use nalgebra::{Matrix3, Vector3};
 
-/// A slice with fewer vertices seen says nothing.
+/// Minimum number of observed vertices in a slice.
 const FEWEST: usize = 2;
 
 /// A line of the sheet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
-    /// Distance at rest from the side that is farthest back, m.
+    /// Rest distance from the rear side, m.
     pub(super) rest: f64,
     /// Distance past the edge, m; negative on the table.
     pub(super) outward: f64,
     /// Height above the edge, m.
     pub(super) height: f64,
-    /// Standard deviation of its place, as a share of that of a coordinate.
+    /// Standard deviation of its position, relative to that of a coordinate.
     pub(super) error: f64,
 }
 
@@ -31,28 +31,29 @@ pub(super) struct Line {
 pub(super) struct Profile {
     /// Index of the frame.
     pub(super) frame: usize,
-    /// The lines that were seen, from the back to the tip.
+    /// Observed lines from the rear to the tip.
     pub(super) lines: Vec<Line>,
-    /// The first of them that is past the edge; what hangs may swing back under it.
+    /// Index of the first line past the edge; overhanging lines may swing back under the table.
     past: usize,
 }
 
 impl Profile {
-    /// The lines on the table, and those past its edge.
+    /// Lines on the table, and lines past its edge.
     pub(super) fn split(&self) -> [&[Line]; 2] {
         let (on, past) = self.lines.split_at(self.past);
         [on, past]
     }
 }
 
-/// The direction away from the table, against gravity; `None` where gravity has no part, or less than half, across it.
+/// Direction away from the table, against gravity; `None` if the component of gravity across the table is zero or
+/// less than half.
 pub(super) fn up(table: &Table, gravity: &Vector3<f64>) -> Option<Vector3<f64>> {
     let normal = Vector3::from(table.outward).cross(&Vector3::from(table.edge_direction)).normalize();
     let across = normal.dot(gravity);
     (across.abs() > 0.5 * gravity.norm()).then(|| normal * -across.signum())
 }
 
-/// All frames in which lines were seen.
+/// Profiles of all frames with observed lines.
 pub(super) fn profiles(sequence: &Sequence, table: &Table, up: &Vector3<f64>) -> Vec<Profile> {
     let [edge, outward] = [table.edge_point_m, table.outward].map(Vector3::from);
     let Some(reach) = reach(sequence, &outward) else { return Vec::new() };
@@ -76,7 +77,7 @@ pub(super) fn profiles(sequence: &Sequence, table: &Table, up: &Vector3<f64>) ->
     shapes(sequence).map(profile).filter(|profile| profile.lines.len() > 1).collect()
 }
 
-/// How far every vertex is, at rest, from the side of the sheet that is farthest back in all frames together, m.
+/// Rest distance of every vertex from the rear side of the sheet over all frames, m.
 fn reach(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vec<f64>> {
     let rest = &sequence.mesh.positions;
     let along = outward_at_rest(sequence, outward)?;
@@ -84,8 +85,8 @@ fn reach(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vec<f64>> {
     Some(rest.iter().map(|rest| rest.dot(&along) - back).collect())
 }
 
-/// The direction of the rest mesh along which places are farther out, in all frames together, whatever part of the sheet was
-/// seen; unit length.
+/// Direction in the rest mesh that points outward on average over all frames, whichever part of the sheet was
+/// observed; unit length.
 pub(super) fn outward_at_rest(sequence: &Sequence, outward: &Vector3<f64>) -> Option<Vector3<f64>> {
     let rest = &sequence.mesh.positions;
     let (mut along, mut spread) = (Vector3::zeros(), Matrix3::zeros());
@@ -102,7 +103,7 @@ pub(super) fn outward_at_rest(sequence: &Sequence, outward: &Vector3<f64>) -> Op
     (inverse * along).try_normalize(0.0)
 }
 
-/// The shapes that were measured, with the indices of their frames.
+/// Measured shapes with the indices of their frames.
 fn shapes(sequence: &Sequence) -> impl Iterator<Item = (usize, &Vec<Vector3<f64>>)> {
     let frames = sequence.frames.iter().enumerate();
     frames.filter_map(|(index, frame)| Some((index, frame.positions.as_ref()?)))

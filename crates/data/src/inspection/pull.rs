@@ -1,11 +1,11 @@
-//! A pulled strip by itself: what the forces on its clips and the clips' distance say without any simulation.
+//! Checks of a pulled strip from clip forces and clip distance alone, without simulation.
 //!
 //! ```text
 //! force                    ╱│ spike: one reading off its neighbours
 //!   │                    ╱  │
 //!   │      rest        ╱    ╲ breakage: it falls while the strip gets longer
 //!   │ slack, tension, ╱
-//!   │ zero off   ___╱           magnitude: N/m of a cloth?
+//!   │ zero off   ___╱           magnitude: N/m plausible for cloth?
 //!   └──────────────────────── separation of the clips
 //! ```
 
@@ -31,11 +31,11 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     notices.extend(inspect(sequence, Some(fabric.areal_density_kg_m2), "forces.csv frame", &numbers));
 }
 
-/// Leaves out the frames after a breakage, and tells of all that was noticed.
+/// Drops the frames after a breakage and reports every notice.
 ///
-/// * `areal_density` — kg/m², if the forces' size is to be judged
-/// * `counted` — what the frames' numbers count
-/// * `numbers` — one a frame
+/// * `areal_density` — kg/m²; given, the magnitude of the forces is checked too
+/// * `counted` — meaning of the frame numbers, e.g. `forces.csv frame`
+/// * `numbers` — one per frame
 pub(crate) fn inspect(
     sequence: &mut Sequence,
     areal_density: Option<f64>,
@@ -46,7 +46,7 @@ pub(crate) fn inspect(
     let mut notices = Vec::new();
     let spikes = spike::find(&pull);
     notices.extend(spike::notice(&pull, &spikes));
-    // One bad reading is not to pass for a breakage or a preload.
+    // A single bad reading must not pass for a breakage or a preload.
     pull.leave_out(&spikes);
     if let Some(breakage) = breakage::find(&pull) {
         let last = pull.readings[breakage.last].number;
@@ -60,7 +60,7 @@ pub(crate) fn inspect(
     notices
 }
 
-/// The free length of a strip, m: where a loading comes to zero, if it is followed down from a force; `None` if it does not.
+/// Free length of a strip, m: where a loading, extrapolated from a given force, reaches zero; `None` if it does not.
 ///
 /// * `force` — N
 pub(crate) fn free_length(loading: &[Reading], force: f64) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! Weight against the way a sheet hangs off a table, in most frames or in some.
+//! Compares the weight with the direction in which a sheet hangs off a table, in most frames or in single ones.
 //!
 //! ```text
 //! ━━━━━┓╲          ━━━━━┓     ╱        ╱┏━━━━━         ━━━━━┓───────
@@ -11,17 +11,17 @@ use crate::frame::{Fabric, Sequence};
 use crate::io::shortened;
 use crate::notice::Notice;
 
-/// Heights that differ less are alike, in standard deviations of a coordinate: a line is the mean of many, but a table need not
-/// be plane to a tenth of a millimetre.
+/// Heights that differ by less count as equal, in standard deviations of a coordinate. A line averages many vertices,
+/// but a table may be uneven by a tenth of a millimetre.
 const ALIKE: f64 = 3.0;
 
-/// One frame that bends otherwise than the others is told from a wrinkle, in multiples of that.
+/// A single deviating frame, as opposed to a wrinkle, in multiples of that.
 const ODD: f64 = 10.0;
 
-/// Nothing that is woven or knitted is stiffer, N·m: sailcloth and leather stay below a thousandth.
+/// Upper limit of rigidity of woven and knitted fabrics, N·m: sailcloth and leather stay below a thousandth.
 const STIFFEST: f64 = 1e-2;
 
-/// Refuses a sequence off a table whose sheet does not hang as its weight pulls.
+/// Refuses an overhang test whose sheet does not hang in the direction of its weight.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(table) = sequence.table else { return };
     let mut refuse = |place: &str, found: String, expected: &str| {
@@ -37,7 +37,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         let found =
             format!("gravity {x}, {y}, {z} is not across the table, which edge_direction and outward span");
         let expected =
-            "gravity that pulls what hangs over below the table: its axis and size, or those of the table";
+            "gravity that pulls the overhang below the table: check its axis and size, or those of the table";
         return refuse("test.toml gravity_m_s2, table", found, expected);
     };
     let profiles = profiles(sequence, &table, &up);
@@ -51,8 +51,8 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         // A cantilever under its own weight.
         if weight * longest.overhang.powi(4) / (8.0 * STIFFEST) > alike {
             let found = format!(
-                "the sheet is flat within {:.2} mm in every frame, though {:.0} mm of it hang over in frame {} and its weight \
-                 acts",
+                "the sheet is flat within {:.2} mm in every frame, despite an overhang of {:.0} mm in frame {} and its \
+                 weight",
                 1e3 * alike,
                 1e3 * longest.overhang,
                 longest.frame
@@ -65,7 +65,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     let agree = bent.iter().filter(|other| other.way() == most.way()).count();
     let Some((place, expected)) = most.way().causes().filter(|_| 2 * agree > bent.len()) else { return };
     let found = format!(
-        "the sheet bends {} and its end there lies {:.1} mm {} the other in frame {} ({agree} of {} frames alike)",
+        "the sheet bends {} and its end there lies {:.1} mm {} the other in frame {} ({agree} of {} frames agree)",
         if most.way().past { "past the edge" } else { "before the edge, on the table," },
         1e3 * most.rise.abs(),
         if most.way().below { "below" } else { "above" },
@@ -75,7 +75,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     refuse(place, found, expected);
 }
 
-/// Doubts a sequence in which single frames do not hang as the others do.
+/// Doubts a sequence in which single frames hang differently from the others.
 pub(super) fn check_frames(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(table) = sequence.table else { return };
     let Some(up) = up(&table, &sequence.gravity) else { return };
@@ -90,29 +90,29 @@ pub(super) fn check_frames(_: &Fabric, sequence: &mut Sequence, notices: &mut Ve
         &sequence.name,
         "positions.npy",
         format!(
-            "sheets that do not hang down past the edge in frame {}, unlike those of the other frames",
+            "sheets that do not hang down past the edge in frame {}, unlike in the other frames",
             shortened(&frames.join(", "), 60)
         ),
-        "one way to hang: such frames left out, or their axes as in the others",
+        "the same direction in all frames: leave these frames out, or use the axes of the others",
     ));
 }
 
-/// How a sheet bends in one frame.
+/// Sag of a sheet in one frame.
 struct Sag {
     frame: usize,
-    /// Some of it lies on the table.
+    /// Part of the sheet lies on the table.
     lies: bool,
-    /// Length past the edge, m; 0 where none or all of it is.
+    /// Length past the edge, m; 0 if none or all of it is.
     overhang: f64,
-    /// The range of heights of what lies on the table, m.
+    /// Range of heights on the table, m.
     on: f64,
-    /// Of what is past its edge.
+    /// Range of heights past the edge, m.
     past: f64,
-    /// How much the outer end lies above the one on the table, m.
+    /// Height of the outer end relative to the end on the table, m.
     rise: f64,
 }
 
-/// Which side of the edge a sheet bends on, and whether the end there lies below the other.
+/// The side of the edge on which a sheet bends, and whether the end there is the lower one.
 #[derive(PartialEq)]
 struct Way {
     past: bool,
@@ -150,7 +150,7 @@ impl Sag {
 }
 
 impl Way {
-    /// What may be wrong, by file and field, and what was expected; `None` where a sheet hangs as it should.
+    /// The likely cause, by file and field, and the expected state; `None` if the sheet hangs correctly.
     fn causes(&self) -> Option<(&'static str, &'static str)> {
         match (self.past, self.below) {
             (true, true) => None,

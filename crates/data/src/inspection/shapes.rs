@@ -1,4 +1,4 @@
-//! Shapes that are missing, or whose heights are all the same, as a camera that sees no depth has them.
+//! Missing shapes, or shapes with constant height, as recorded by a camera without depth.
 
 use crate::frame::{Fabric, HEIGHT_SEEN, Sequence, is_seen};
 use crate::kind::Holding;
@@ -14,11 +14,11 @@ pub(super) fn check_presence(_: &Fabric, sequence: &mut Sequence, notices: &mut 
         &sequence.name,
         "positions.npy",
         "nothing",
-        "the measured shapes, there or in frames/: bending needs them",
+        "the measured shapes, there or in frames/: a bending test requires them",
     ));
 }
 
-/// Says of a sheared sheet that its shapes do not tell whether it buckled.
+/// Reports a sheared sheet whose shapes cannot show whether it buckled.
 pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let places = sequence.frames.iter().flat_map(|frame| &frame.positions).flatten();
     let seen: Vec<&Vector3<f64>> = places.filter(|place| is_seen(place)).collect();
@@ -27,5 +27,10 @@ pub(super) fn check_heights(_: &Fabric, sequence: &mut Sequence, notices: &mut V
     {
         return;
     }
-    notices.push(Notice::remark(&sequence.name, "positions.npy", "one and the same height of every vertex in every frame: it was not measured", "heights as they were seen, which tell whether the sheet buckled: it is fitted as one that nobody saw"));
+    notices.push(Notice::remark(
+        &sequence.name,
+        "positions.npy",
+        "the same height for every vertex in every frame: it was not measured",
+        "measured heights, which show whether the sheet buckled: it is fitted as if no shapes were measured",
+    ));
 }

@@ -1,5 +1,5 @@
-//! Sizes against each other, and against what there is: a specimen and the sample that it was cut from, how far it was
-//! pulled, gravity, and the mass of cloth.
+//! Checks sizes against each other and against plausible ranges: the specimen and its sample, the extension, gravity,
+//! and areal density.
 
 use crate::frame::{Fabric, Sequence};
 use crate::measure::{affine_map, clip_centres, mean};
@@ -9,37 +9,39 @@ use cloth_sim::mesh::Mesh;
 use nalgebra::{Vector2, Vector3};
 use std::ops::RangeInclusive;
 
-/// How many of other units make a metre.
+/// Other units per metre.
 const UNITS: [(f64, &str); 3] = [(1000.0, "millimetres"), (100.0, "centimetres"), (39.37, "inches")];
-/// Two sides may be so far from a unit's ratio: a mesh with or without what its clips hold is one specimen.
+/// Allowed relative deviation of two sides from a unit ratio: meshes with and without the clipped parts describe one
+/// specimen.
 const SAME: f64 = 0.05;
-/// A set's sample may be its first strip, and another strip be longer; so much longer it is another unit.
+/// Size ratio that indicates another unit. A smaller ratio is legitimate: the sample of a set may be its first strip,
+/// and another strip may be longer.
 const LARGER: f64 = 5.0;
-/// No laboratory pulls a sheet of this size, m.
+/// Size beyond any laboratory specimen, m.
 const LARGE: f64 = 2.0;
-/// Hardly any cloth is pulled to so many times its length; elastic tapes are.
+/// Stretch ratio beyond almost all cloth, except elastic tapes.
 const STRETCHED: f64 = 4.0;
-/// What gravity is on earth, m/s², from the equator to the poles: bending stiffness goes with it.
+/// Gravity on earth from the equator to the poles, m/s²; bending stiffness is proportional to it.
 const GRAVITY: RangeInclusive<f64> = 9.76..=9.84;
-/// In another unit it may be rounded.
+/// Range of rounded values in another unit.
 const ROUNDED: RangeInclusive<f64> = 9.5..=10.2;
-/// Gravity in other units, over that in m/s².
+/// Gravity in other units, relative to m/s².
 const GRAVITY_UNITS: [(f64, &str); 4] = [
     (100.0, "cm/s²: divide by 100"),
     (1000.0, "mm/s²: divide by 1000"),
     (1.0 / 9.81, "multiples of g: multiply by 9.81"),
     (3.2808, "ft/s²: multiply by 0.3048"),
 ];
-/// What fabrics weigh, kg/m²: from chiffon to the heaviest canvas.
+/// Areal density of fabrics, kg/m²: from chiffon to the heaviest canvas.
 const AREAL_DENSITY: RangeInclusive<f64> = 0.01..=3.0;
 
-/// Lengths at rest and in material coordinates may differ by this share, and by so many times the error of their ratio: less
-/// than the strains at which a stiff cloth is measured.
+/// Allowed relative difference between rest lengths and material coordinates, in addition to a multiple of its error;
+/// below the strains at which a stiff cloth is measured.
 const SAME_REST: f64 = 5e-4;
 const SURE: f64 = 4.0;
 
-/// Compares the specimen with its sample, its material coordinates with its rest shape, its clips' distances with those at
-/// rest, gravity and areal density with what there is.
+/// Compares the specimen with its sample, material coordinates with the rest shape, and clip distances with those at
+/// rest; checks gravity and areal density for plausibility.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let found = [
         specimen(fabric, sequence),
@@ -61,7 +63,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
 type Finding = (Severity, &'static str, String, String);
 
 fn specimen(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
-    // What is no rectangle is refused where its grid is laid.
+    // A specimen that is not a rectangle is refused when its grid is made.
     let size = ascending(rest_size(sequence).ok()?);
     let sample = ascending([fabric.width_m, fabric.height_m]);
     let sizes = |[short, long]: [f64; 2]| format!("{long:.3} × {short:.3} m");
@@ -72,7 +74,7 @@ fn specimen(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     };
     if let Some((by, unit)) = unit_of(times) {
         let expected =
-            format!("metres in both ({unit}? divide v and vt, and what else is in {unit}, by {by})");
+            format!("metres in both ({unit}? divide v and vt, and everything else in {unit}, by {by})");
         return Some((Severity::Refusal, "mesh.obj v", found, expected));
     }
     if let Some((by, unit)) = unit_of(times.map(f64::recip)) {
@@ -85,12 +87,7 @@ fn specimen(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     }
     (size[1] > LARGE).then(|| {
         let found = format!("a specimen of {}", sizes(size));
-        (
-            Severity::Doubt,
-            "mesh.obj v",
-            found,
-            format!("one of {LARGE} m at most (centimetres? divide by 100)"),
-        )
+        (Severity::Doubt, "mesh.obj v", found, format!("at most {LARGE} m (centimetres? divide by 100)"))
     })
 }
 
@@ -109,7 +106,7 @@ fn separation(sequence: &Sequence) -> Option<Finding> {
         let found =
             format!("clips {most:.3} m apart in frame {frame}, {:.1} times as far as at rest", most / rest);
         let expected =
-            "metres (centimetres? divide tx_m, ty_m and tz_m by 100), or a fabric that stretches so far";
+            "metres (centimetres? divide tx_m, ty_m and tz_m by 100), or a fabric that stretches this far";
         (Severity::Doubt, "clips.csv tx_m", found, expected.into())
     })
 }
@@ -134,12 +131,12 @@ fn areal_density(fabric: &Fabric, sequence: &Sequence) -> Option<Finding> {
     (counts && !AREAL_DENSITY.contains(&density)).then(|| {
         let remedy = if density > 3.0 { " (g/m²? divide by 1000)" } else { "" };
         let [low, high] = [AREAL_DENSITY.start(), AREAL_DENSITY.end()];
-        let expected = format!("{low} to {high} kg/m², as cloth has{remedy}");
+        let expected = format!("{low} to {high} kg/m², the range of cloth{remedy}");
         (Severity::Doubt, "fabric.toml areal_density_kg_m2", format!("{density} kg/m²"), expected)
     })
 }
 
-/// Rest positions as an affine map of material coordinates, x = A m + b: A stretches nothing.
+/// Rest positions as an affine map of material coordinates, x = A m + b; A must not stretch.
 fn material(sequence: &Sequence) -> Option<Finding> {
     let Mesh { material, positions, .. } = &sequence.mesh;
     let map = affine_map(material, positions)?;
@@ -147,7 +144,7 @@ fn material(sequence: &Sequence) -> Option<Finding> {
     let middle = mean(material.iter().zip(positions).map(apart));
     let residual: f64 =
         material.iter().zip(positions).map(|pair| (apart(pair) - middle).norm_squared()).sum();
-    // The slope of a line through points that are spread evenly over the shorter side.
+    // The slope of a line through points spread evenly over the shorter side.
     let [side, _] = ascending(rest_size(sequence).ok()?);
     let error = (12.0 * residual).sqrt() / (material.len() as f64 * side);
     let stretches = map.singular_values().map(|stretch| stretch - 1.0);
@@ -158,7 +155,7 @@ fn material(sequence: &Sequence) -> Option<Finding> {
             100.0 * off.abs(),
             if off > 0.0 { "longer" } else { "shorter" }
         );
-        let expected = "the same lengths: v flat and free, and vt along weft and warp in metres; what differs is taken for strain";
+        let expected = "the same lengths: v flat and free, and vt along weft and warp in metres; a difference counts as strain";
         (Severity::Doubt, "mesh.obj v", found, expected.into())
     })
 }
@@ -176,7 +173,7 @@ mod tests {
     use cloth_sim::mesh::{Diagonals, Grid};
     use nalgebra::Isometry3;
 
-    /// A strip of so many metres, pulled to so many times its length.
+    /// A strip of the given length, pulled to a multiple of it.
     fn strip(length: f64, width: f64, times: f64, gravity: f64) -> Sequence {
         let grid = Grid { columns: 2, rows: 2, width: length, height: width, diagonals: Diagonals::Forward };
         let clip = |name: &str, vertices: [usize; 2]| Clip {
@@ -199,7 +196,7 @@ mod tests {
         }
     }
 
-    /// Of a sample of 80 × 40 mm.
+    /// Notices for a sample of 80 × 40 mm.
     fn noticed_of(mut sequence: Sequence, density: f64) -> Vec<String> {
         let fabric = Fabric {
             name: "knit".into(),
@@ -224,13 +221,13 @@ mod tests {
         for gravity in [0.0, 9.81, 9.78, 9.83] {
             assert_eq!(noticed(0.08, 0.04, 1.1, gravity, 0.3), [""; 0]);
         }
-        // A part of the sample, cut either way; another strip than the first; a tape.
+        // A part of the sample, cut either way; a strip other than the first; a tape.
         for (length, width, times) in
             [(0.02, 0.01, 1.0), (0.04, 0.08, 1.3), (0.2, 0.04, 1.0), (0.08, 0.04, 3.9)]
         {
             assert_eq!(noticed(length, width, times, 9.81, 0.02), [""; 0], "{length}");
         }
-        // Mass does not matter where nothing has weight.
+        // Areal density does not matter without gravity.
         assert_eq!(noticed(0.08, 0.04, 1.0, 0.0, 8.0), [""; 0]);
     }
 
@@ -239,7 +236,7 @@ mod tests {
         let both =
             "mesh.obj v: found a specimen of 8.000 × 4.000 m, and in fabric.toml a sample of 0.080 × 0.040 m";
         let expected =
-            "metres in both (centimetres? divide v and vt, and what else is in centimetres, by 100)";
+            "metres in both (centimetres? divide v and vt, and everything else in centimetres, by 100)";
         let found = noticed(8.0, 4.0, 1.1, 0.0, 0.3);
         assert_eq!(found, [format!("Refusal: sequence strip, {both}, expected {expected}")]);
         for (factor, unit) in [(1000.0, "millimetres"), (39.37, "inches")] {
@@ -249,7 +246,7 @@ mod tests {
             let remedy = format!("({unit}? divide width_m and height_m in fabric.toml by {factor})");
             assert!(found[0].starts_with("Refusal") && found[0].contains(&remedy), "{found:?}");
         }
-        // No unit is so many metres: it is said, not refused.
+        // No unit matches this ratio: a doubt, not a refusal.
         let found = noticed(1.0, 0.03, 1.0, 0.0, 0.3);
         assert!(found[0].starts_with("Doubt") && found[0].contains("cut from the sample"), "{found:?}");
     }

@@ -1,4 +1,4 @@
-//! Forces on a sheet in a picture frame that is not sheared yet.
+//! Forces on a sheet in a picture frame before shearing starts.
 
 use crate::frame::{Clip, Fabric, Sequence};
 use crate::kind::Holding;
@@ -6,23 +6,23 @@ use crate::measure::{clip_centres, mean};
 use crate::notice::Notice;
 use nalgebra::Vector3;
 
-/// Clips whose distances differ from those at rest by less than this share of what they ever do are at rest.
+/// Clips are at rest if their distances differ from the rest state by less than this share of their largest change.
 const REST: f64 = 1e-3;
-/// Of the largest force: cords have friction, and frames are put on with a little tension.
+/// Share of the largest force: cords have friction, and specimens are mounted with slight tension.
 const SHARE: f64 = 0.1;
-/// In standard deviations.
+/// Number of standard deviations.
 const SURE: f64 = 5.0;
 
-/// Doubts shear whose cords pull before anything is sheared.
+/// Doubts a shear test whose cords pull before shearing starts.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     if sequence.kind.holding() != Holding::PictureFrame {
         return;
     }
     let sequence: &Sequence = sequence;
     let up = sequence.gravity.try_normalize(0.0).unwrap_or_default();
-    // What bears the weight is no tension.
+    // The force that carries the weight is not a tension.
     let in_plane = |force: Vector3<f64>| force - up * force.dot(&up);
-    // Distances between clips do not care where the set was carried.
+    // Distances between clips do not depend on rigid motions.
     let apart = |centres: &[Vector3<f64>]| -> Vec<f64> {
         let pairs =
             centres.iter().enumerate().flat_map(|(i, a)| centres[..i].iter().map(move |b| (a - b).norm()));
@@ -41,7 +41,7 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
     let all = frames.clone().flat_map(|frame| clips.clone().filter_map(move |clip| force(frame, clip)));
     let largest = all.map(|force| force.norm()).fold(0.0, f64::max);
     let at_rest: Vec<usize> = frames.filter(|frame| moved(*frame) <= REST * farthest).collect();
-    // Friction of cords pulls either way before and after a cycle.
+    // Cord friction acts in opposite directions before and after a cycle.
     let tare = |clip| {
         let forces: Vec<Vector3<f64>> = at_rest.iter().filter_map(|frame| force(*frame, clip)).collect();
         Some((clip, mean(forces.iter().copied()).norm())).filter(|_| !forces.is_empty())
@@ -58,8 +58,8 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
         format!("forces.csv frame {}", at_rest.first().copied().unwrap_or(0)),
         format!("{force:.3} N on clip {} before the frame is sheared", sequence.clips[clip].name),
         format!(
-            "none in the plane: load cells set to zero with nothing in them, and less than {:.0} % of the largest force, \
-             {largest:.3} N, of tension",
+            "none in the plane: load cells zeroed without load, and a tension of less than {:.0} % of the largest force, \
+             {largest:.3} N",
             100.0 * SHARE
         ),
     );

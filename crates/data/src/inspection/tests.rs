@@ -10,7 +10,7 @@ fn fixture(name: &str) -> MeasurementSet {
     read_set(&Path::new(FIXTURES).join(name)).unwrap()
 }
 
-/// One sequence of the denim's set, changed, and what is noticed of it.
+/// Notices for one sequence of the denim set after a change.
 fn noticed(name: &str, change: impl FnOnce(&mut Fabric, &mut Sequence)) -> Vec<Notice> {
     let MeasurementSet { mut fabric, sequences } = fixture("cotton-denim");
     let mut sequence = sequences.into_iter().find(|sequence| sequence.name == name).unwrap();
@@ -18,7 +18,7 @@ fn noticed(name: &str, change: impl FnOnce(&mut Fabric, &mut Sequence)) -> Vec<N
     inspect_sequence(&fabric, &sequence).1
 }
 
-/// The only notice, which must refuse, and say all of this.
+/// The single notice must be a refusal and contain these phrases.
 fn refused(notices: &[Notice], said: &[&str]) {
     let [notice] = notices else { panic!("{notices:?}") };
     assert_eq!(notice.severity, Severity::Refusal, "{notice}");
@@ -37,14 +37,14 @@ fn nothing_is_noticed_of_what_is_as_it_should_be() {
     }
 }
 
-/// The figure in front of some words, in a message.
+/// The figure before a phrase in a message.
 fn figure(notice: &Notice, words: &str) -> f64 {
     let text = notice.to_string();
     let before = text.split(words).next().unwrap().trim_end();
     before.rsplit(' ').next().unwrap().parse().unwrap()
 }
 
-/// How far the tip lies below the back of the sheet where it does most, mm.
+/// Largest drop of the tip below the rear of the sheet, mm.
 fn largest_drop(sequence: &Sequence) -> f64 {
     let rest = &sequence.mesh.positions;
     let [back, tip] = [-0.1, 0.0].map(|x| {
@@ -57,7 +57,7 @@ fn largest_drop(sequence: &Sequence) -> f64 {
     shapes.map(|shape| 1e3 * (mean(&back, shape) - mean(&tip, shape))).fold(0.0, f64::max)
 }
 
-/// The only notice, which must doubt, and say all of this.
+/// The single notice must be a doubt and contain these phrases.
 fn doubted(notices: &[Notice], said: &[&str]) {
     let [notice] = notices else { panic!("{notices:?}") };
     assert_eq!(notice.severity, Severity::Doubt, "{notice}");
@@ -70,7 +70,7 @@ fn a_bending_test_without_shapes_is_refused() {
     let notices = noticed("bend-warp", |_, sequence| {
         sequence.frames.iter_mut().for_each(|frame| frame.positions = None);
     });
-    refused(&notices, &["positions.npy", "found nothing", "bending needs them"]);
+    refused(&notices, &["positions.npy", "found nothing", "a bending test requires them"]);
 }
 
 #[test]
@@ -124,15 +124,18 @@ fn vertices_beside_a_clip_that_move_with_it_are_told() {
             (held.len() - 1) as f64 / 0.24,
             25 - held.len()
         );
-        doubted(&notices, &["test.toml clips.vertices", &share, "seen to move as it does"]);
+        doubted(&notices, &["test.toml clips.vertices", &share, "that move with it"]);
     }
-    // Nobody saw it.
+    // No observation beside the clip.
     let notices = noticed("stretch-weft", |_, sequence| {
         sequence.clips[0].vertices.truncate(23);
         sequence.frames.iter_mut().for_each(|frame| frame.positions = None);
     });
-    doubted(&notices, &["test.toml clips.vertices", "along 92 % of its side, expected all that it holds"]);
-    // Those of a specimen that is free there lag.
+    doubted(
+        &notices,
+        &["test.toml clips.vertices", "along 92 % of its side, expected all vertices it holds"],
+    );
+    // Vertices beside the clip of a free specimen lag.
     let notices = noticed("stretch-weft", |_, sequence| {
         let clips = sequence.clips.iter_mut();
         clips.for_each(|clip| clip.vertices = clip.vertices[8..17].to_vec());
@@ -161,10 +164,10 @@ fn cords_that_pull_a_specimen_to_one_side_are_told() {
         cords.filter(|cord| cord.clip == 1).for_each(|cord| cord.force *= 1.5);
     });
     doubted(&notices, &["forces.csv", "to one side in 11 of 11 frames", "calibration of each load cell"]);
-    // What pulls alike in every frame is weight.
+    // A force equal in every frame is weight.
     let notices = noticed("shear", |_, sequence| sequence.gravity = Vector3::new(0.0, -9.81, 0.0));
     assert!(notices.iter().any(|notice| notice.place == "test.toml gravity_m_s2"), "{notices:?}");
-    // It says nothing of the other tests.
+    // It does not affect the other tests.
     let mut set = fixture("cotton-denim");
     let shear = set.sequences.iter_mut().filter(|sequence| sequence.name == "shear");
     let cords = shear.flat_map(|sequence| &mut sequence.frames).flat_map(|frame| &mut frame.cords);
@@ -205,7 +208,7 @@ fn one_load_cell_that_reads_wrong_in_every_test_is_doubted_where_nothing_weighs(
         }
         assert!(of("bend-weft").is_none(), "{factor}: {:?}", of("bend-weft"));
     }
-    // Clips without mass in one test are no fault of the others.
+    // Clips without mass in one test do not affect the others.
     let mut set = fixture("cotton-denim");
     let shear = set.sequences.iter_mut().filter(|sequence| sequence.name == "shear");
     shear.flat_map(|sequence| &mut sequence.clips).for_each(|clip| clip.mass_kg = 0.0);
@@ -219,7 +222,9 @@ fn heights_that_were_not_measured_are_told() {
         each_place(sequence, |place| place.z = 0.0);
     });
     let [notice] = &notices[..] else { panic!("{notices:?}") };
-    assert!(notice.severity == Severity::Remark && notice.to_string().contains("one that nobody saw"));
+    assert!(
+        notice.severity == Severity::Remark && notice.to_string().contains("as if no shapes were measured")
+    );
 }
 
 #[test]
@@ -272,7 +277,7 @@ fn a_sheet_that_stays_flat_under_its_weight_is_refused() {
         }
     });
     refused(&with_noise, &["flat"]);
-    // Gravity along the table, or none.
+    // Gravity along the table, or zero.
     for gravity in [Vector3::zeros(), Vector3::x() * 9.81, Vector3::y() * -9.81] {
         let notices = noticed("bend-weft", |_, sequence| sequence.gravity = gravity);
         refused(&notices, &["test.toml gravity_m_s2", "not across the table"]);
@@ -295,7 +300,7 @@ fn an_edge_that_is_elsewhere_is_found_and_its_distance_told() {
             assert!((told - 1e3 * f64::abs(off)).abs() < 2.0, "{name}, {off}: {}", notices[0]);
         }
     }
-    // By less than half of what the lines are apart.
+    // By less than half of the line spacing.
     for off in [-0.0012, 0.0012] {
         assert_eq!(noticed("bend-weft", |_, s| s.table.as_mut().unwrap().edge_point_m[0] += off), []);
     }
@@ -310,13 +315,13 @@ fn poses_that_are_not_where_the_clips_were_seen_are_refused() {
         poses.for_each(|pose| pose.translation.vector *= 0.5);
     });
     refused(&halved, &["clips.csv", "positions.npy", "(rms)", "in frame 6", "qw first"]);
-    // Half of what a clip moved, and the noise of three coordinates.
+    // Half of the clip motion, and the noise of three coordinates.
     let MeasurementSet { sequences, .. } = fixture("cotton-denim");
     let sequence = sequences.iter().find(|s| s.name == "stretch-weft").unwrap();
     let way = sequence.frames[6].poses[0].translation.vector.norm();
     let expected = 1e3 * (0.25 * way * way + 3.0 * 7.5e-5f64.powi(2)).sqrt();
     assert!((figure(&halved[0], "mm (rms)") - expected).abs() < 0.1, "{expected} {}", halved[0]);
-    // As good as an instrument that sees a clip by one vertex.
+    // An instrument that tracks a clip by one vertex.
     let noisy = noticed("shear", |_, sequence| {
         let error = Isometry3::new(Vector3::new(1e-4, -1e-4, 5e-5), Vector3::new(0.0, 5e-4, 7e-4));
         sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses).for_each(|pose| *pose = error * *pose);
@@ -328,7 +333,7 @@ fn sequence_of(name: &str) -> Sequence {
     fixture("cotton-denim").sequences.into_iter().find(|sequence| sequence.name == name).unwrap()
 }
 
-/// Which points of which frames are not observed.
+/// Unobserved points of all frames.
 fn unobserved(sequence: &Sequence) -> Vec<(usize, usize)> {
     let frames = sequence.frames.iter().enumerate();
     let shapes = frames.filter_map(|(index, frame)| Some((index, frame.positions.as_ref()?)));
@@ -339,7 +344,7 @@ fn unobserved(sequence: &Sequence) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// Where a failed point is said to be, by where it lay at rest and where it was.
+/// Recorded position of a lost point, from its rest position and its true position.
 type Way = fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>;
 
 #[test]
@@ -350,10 +355,10 @@ fn points_that_were_not_followed_are_left_out_and_no_others() {
         .flat_map(|frame| (0..625).filter(move |v| (v * 7 + frame * 11) % 31 == 0).map(move |v| (frame, v)))
         .collect();
     let ways: [(&str, Way); 4] = [
-        ("at one and the same place", |_, _| Vector3::zeros()),
-        ("where they lay at rest", |rest, _| rest),
-        ("where they lay at rest", |rest, _| rest.map(|c| f64::from(c as f32))),
-        ("far away from their neighbours", |_, seen| seen + Vector3::new(0.0, 0.012, 0.016)),
+        ("at the same place", |_, _| Vector3::zeros()),
+        ("at their rest position", |rest, _| rest),
+        ("at their rest position", |rest, _| rest.map(|c| f64::from(c as f32))),
+        ("far from their neighbours", |_, seen| seen + Vector3::new(0.0, 0.012, 0.016)),
     ];
     for (said, way) in ways {
         let mut sequence = clean.clone();
@@ -381,13 +386,13 @@ fn shapes_that_were_lost_in_every_frame_are_doubted() {
     lose(&mut sequence.frames[0]);
     let notices = inspect_sequence(&fabric, &sequence).1;
     let doubt = notices.iter().find(|notice| notice.severity == Severity::Doubt).unwrap().to_string();
-    assert!(doubt.contains("positions.npy") && doubt.contains("no vertex that was followed"), "{doubt}");
+    assert!(doubt.contains("positions.npy") && doubt.contains("no vertex tracked"), "{doubt}");
 }
 
 #[test]
 fn what_truly_rests_is_observed() {
     let fabric = fixture("cotton-denim").fabric;
-    // A sheet that lies on the table to the last bit while its other half hangs, and one that rests as a whole.
+    // A sheet with one half exactly at rest on the table and the other hanging, and one that rests completely.
     let mut sequence = sequence_of("bend-weft");
     let rest = sequence.mesh.positions.clone();
     let hang = |p: &Vector3<f64>| {
@@ -405,7 +410,7 @@ fn what_truly_rests_is_observed() {
     let (inspected, notices) = inspect_sequence(&fabric, &sequence);
     assert_eq!(unobserved(&inspected), []);
     assert!(notices.iter().all(|notice| notice.severity > Severity::Remark), "{notices:?}");
-    // Held by a clip that stays while all else is stretched by half.
+    // Held by a clip that stays while the rest is stretched by half.
     let mut sequence = sequence_of("stretch-weft");
     let rest = sequence.mesh.positions.clone();
     for frame in &mut sequence.frames {
@@ -419,7 +424,7 @@ fn what_truly_rests_is_observed() {
 
 #[test]
 fn weight_that_the_cords_do_not_bear_is_told_with_its_figures() {
-    // Four bars of 13.3 g and 100 mm square of 460 g/m², as it was made: 57.8 g.
+    // Four bars of 13.3 g and 100 mm square of 460 g/m², as simulated: 57.8 g.
     let borne = 0.0578 * 9.81;
     let wrong = [
         noticed("shear", |fabric, _| fabric.areal_density_kg_m2 *= 6.5),
@@ -442,7 +447,7 @@ fn weight_that_the_cords_do_not_bear_is_told_with_its_figures() {
             refused(&notices, &["test.toml gravity_m_s2", &size.to_string(), "9.81"]);
         }
     }
-    // What was not measured contradicts nothing.
+    // Unmeasured quantities contradict nothing.
     let silent = [
         noticed("shear", |fabric, sequence| {
             fabric.areal_density_kg_m2 *= 6.5;
@@ -473,7 +478,7 @@ fn an_areal_density_that_a_frame_contradicts_is_doubted_where_rigidity_follows_f
         doubted(&set),
         ["complex-shear", "corner-pull", "shear", "bend-bias", "bend-warp", "bend-weft"]
     );
-    // Heavier clips alone than what is borne: it is not the cloth.
+    // Clips heavier than the measured weight: the cloth is not at fault.
     let mut set = fixture("cotton-denim");
     set.sequences.iter_mut().flat_map(|s| &mut s.clips).for_each(|clip| clip.mass_kg *= 1000.0);
     assert_eq!(doubted(&set), ["complex-shear", "corner-pull", "shear"]);

@@ -1,4 +1,4 @@
-//! What the cords pull with against weight, and against each other: a specimen at rest is in balance.
+//! Compares the cord forces with the weight and with each other: a specimen at rest is in equilibrium.
 
 use crate::frame::{Fabric, MeasurementSet, Sequence};
 use crate::kind::Holding;
@@ -6,41 +6,41 @@ use crate::measure::{mean, median};
 use crate::notice::Notice;
 use nalgebra::Vector3;
 
-/// Of the weight: cords have friction, and scales are read to less.
+/// Share of the weight: cords have friction, and readings of scales are coarse.
 const SHARE: f64 = 0.1;
 
-/// In standard deviations.
+/// Number of standard deviations.
 const SURE: f64 = 6.0;
 
-/// Two ratios, or two densities, are one within these factors: of a density only what clips leave over is known.
+/// Two ratios, or two densities, agree within these factors. Only the remainder after the clips determines a density.
 const ONE_RATIO: f64 = 1.15;
 const ONE_DENSITY: f64 = 1.5;
 
-/// Of the forces: what cells are sure of, and what a tilt of their axes by a third of a degree makes.
+/// Share of the forces: the accuracy of load cells, and a tilt of their axes by a third of a degree.
 const FORCE_SHARE: f64 = 5e-3;
 
-/// Forces that vary by less than this share (rms) from frame to frame are one, but for friction of the cords.
+/// Forces whose variation between frames is below this share (rms) are constant, apart from cord friction.
 const ALIKE: f64 = 0.25;
 
-/// Of the larger force: cords of clips that do not move may hold by friction.
+/// Share of the largest force: cords of stationary clips may hold by friction.
 const APART: f64 = 0.1;
 
-/// Doubts a sequence whose cords bear another weight than cloth and clips have, or do not balance each other across it.
+/// Doubts a sequence whose cords carry a weight other than that of cloth and clips, or do not balance across gravity.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     notices.extend(unbalanced(sequence));
     if let Some(weight) = Weight::of(fabric, sequence).filter(Weight::disagrees) {
         notices.push(Notice::doubt(&sequence.name, "forces.csv", format!(
-                "cords that bear {:.3} N against gravity, where the cloth ({:.1} g) and the clips ({:.1} g) weigh {:.3} N",
+                "cords that carry {:.3} N against gravity, while the cloth ({:.1} g) and the clips ({:.1} g) weigh {:.3} N",
                 weight.borne,
                 1e3 * weight.cloth,
                 1e3 * weight.clips,
                 weight.expected()
             ), "the same: the unit or calibration of forces.csv, areal_density_kg_m2 of fabric.toml, mass_kg of the clips or \
-                       gravity_m_s2 in test.toml, or forces that were set to zero under load"));
+                       gravity_m_s2 in test.toml, or forces zeroed under load"));
     }
 }
 
-/// Forces that do not add up to zero across gravity, in most frames to the same side of what they pull.
+/// Forces that do not sum to zero across gravity, in most frames.
 fn unbalanced(sequence: &Sequence) -> Option<Notice> {
     if sequence.force_direction.is_some() || sequence.clips.len() < 2 {
         return None;
@@ -70,10 +70,10 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
             &sequence.name,
             "test.toml gravity_m_s2",
             format!(
-                "cords that pull the specimen alike in every frame, by {:.3}, {:.3}, {:.3} N, across gravity",
+                "cords that pull the specimen equally in every frame, by {:.3}, {:.3}, {:.3} N, across gravity",
                 usual.x, usual.y, usual.z
             ),
-            "gravity against it, if it is weight that they bear: gravity_m_s2, in the axes of forces.csv",
+            "gravity opposite to it, if they carry weight: gravity_m_s2, in the axes of forces.csv",
         ));
     }
     let sum = sum.norm();
@@ -81,7 +81,7 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
         &sequence.name,
         "forces.csv",
         format!(
-            "cords that pull the specimen to one side in {off} of {count} frames, most in frame {index}, by {sum:.3} N where the \
+            "cords that pull the specimen to one side in {off} of {count} frames, most in frame {index}, by {sum:.3} N; the \
              largest force is {largest:.3} N"
         ),
         "forces that add up to zero across gravity: the calibration of each load cell, or cords that forces.csv leaves \
@@ -89,16 +89,16 @@ fn unbalanced(sequence: &Sequence) -> Option<Notice> {
     ))
 }
 
-/// Doubts tests that weigh nothing themselves by what the cords of others of the set bear: stretch where they all bear one
-/// and the same multiple of the weight, as of another unit; bending where they all tell one other areal density, to which
-/// rigidity is proportional; both where one test alone cannot tell which.
+/// Doubts tests without a weight measurement of their own, on the evidence of the other tests of the set. Stretch:
+/// all those tests carry the same multiple of the weight, as with another unit. Bending: they all imply the same
+/// different areal density, to which rigidity is proportional. Both: a single test cannot tell the two apart.
 pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
-    // What does not balance by itself says nothing of others.
+    // A sequence that is out of equilibrium itself is no evidence about others.
     let balanced = set.sequences.iter().filter(|sequence| unbalanced(sequence).is_none());
     let weights = balanced.map(|sequence| Some((sequence, Weight::of(&set.fabric, sequence)?)));
     let weighed: Vec<(&Sequence, Weight)> = weights.flatten().collect();
     let off: Vec<&(&Sequence, Weight)> = weighed.iter().filter(|(_, weight)| weight.disagrees()).collect();
-    // Those that agree speak for the rest of the set.
+    // Agreeing tests speak for the rest of the set.
     let Some((first, weight)) = off.first().filter(|_| off.len() == weighed.len()) else { return };
     let is_one = |values: Vec<f64>, factor: f64| {
         let [low, high] = values.iter().fold([f64::MAX, f64::MIN], |[l, h], v| [l.min(*v), h.max(*v)]);
@@ -114,14 +114,14 @@ pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
         let stretched = other.kind.holding() == Holding::Strip;
         if stretched && ratio && Weight::of(&set.fabric, other).is_none() {
             let times = weight.borne / weight.expected();
-            let found = format!("a load cell that in {} reads {times:.3} times the weight", first.name);
+            let found = format!("a load cell that reads {times:.3} times the weight in {}", first.name);
             let expected = "1, if it is the same cell: the unit or the calibration of forces.csv";
             doubt(other, "forces.csv", found, expected);
         }
         if let Some(share) = weight.cloth_share().filter(|_| other.table.is_some() && density) {
             let told = set.fabric.areal_density_kg_m2;
             let found = format!(
-                "{told} kg/m², where the cords of {} bear what {:.3} kg/m² would weigh",
+                "{told} kg/m², while the cords of {} carry the weight of {:.3} kg/m²",
                 first.name,
                 share * told
             );
@@ -131,11 +131,11 @@ pub(super) fn doubt_others(set: &MeasurementSet, notices: &mut Vec<Notice>) {
     }
 }
 
-/// What cords bear, and what they should.
+/// Weight carried by the cords, and expected weight.
 struct Weight {
     /// Against gravity, N.
     borne: f64,
-    /// By so much it may differ, N.
+    /// Allowed difference, N.
     error: f64,
     /// Masses, kg.
     cloth: f64,
@@ -145,8 +145,8 @@ struct Weight {
 }
 
 impl Weight {
-    /// From the middle of all frames, about which friction of cords errs either way; `None` where there is no gravity, or no
-    /// force was measured along it.
+    /// Uses the median over all frames, since cord friction acts in both directions; `None` without gravity or
+    /// without a force measured along it.
     fn of(fabric: &Fabric, sequence: &Sequence) -> Option<Self> {
         let gravity = sequence.gravity.norm();
         if gravity == 0.0 || sequence.force_direction.is_some() || sequence.clips.is_empty() {
@@ -162,7 +162,7 @@ impl Weight {
                 (forces.iter().map(|f| f.dot(&up)).sum(), forces.iter().map(|f| f.norm()).sum())
             })
             .unzip();
-        // A column of zeros is no measurement.
+        // A column of zeros is not a measurement.
         if along.iter().all(|force| *force == 0.0) {
             return None;
         }
@@ -186,7 +186,8 @@ impl Weight {
         (self.borne - self.expected()).abs() > f64::max(self.error, SHARE * least)
     }
 
-    /// The cloth's mass by what is borne, as a share of that told; `None` if nothing, or less, is left for it.
+    /// Mass of the cloth derived from the cord forces, relative to the declared mass; `None` if nothing, or less,
+    /// remains for it.
     fn cloth_share(&self) -> Option<f64> {
         Some((self.borne / self.gravity - self.clips) / self.cloth).filter(|share| *share > 0.0)
     }

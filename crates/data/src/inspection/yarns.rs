@@ -1,4 +1,4 @@
-//! Along which yarns a sheet hangs off its table, against the kind of its test.
+//! Compares the yarn direction of an overhanging sheet with the kind of its test.
 
 use super::profile::outward_at_rest;
 use crate::frame::{Fabric, Sequence, is_seen};
@@ -6,13 +6,13 @@ use crate::measure::affine_map;
 use crate::notice::Notice;
 use nalgebra::Vector3;
 
-/// A specimen is cut and laid as straight as this, °.
+/// Allowed misalignment of cutting and placing, °.
 const STRAIGHT: f64 = 15.0;
 
-/// So many vertices, over all frames, tell a direction.
+/// Minimum number of vertices, over all frames, that determine a direction.
 const FEWEST: usize = 20;
 
-/// Refuses a test of bending whose sheet hangs along other yarns than its kind says.
+/// Refuses a bending test whose sheet hangs along other yarns than its kind states.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(table) = sequence.table else { return };
     let expected = sequence.kind.degrees_from_weft();
@@ -31,7 +31,7 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
         )));
 }
 
-/// The angle between weft and the direction of the rest mesh that hangs out farthest, 0 to 90°.
+/// Angle between weft and the direction of the rest mesh that points outward, 0 to 90°.
 fn angle_from_weft(sequence: &Sequence, outward: &Vector3<f64>) -> Option<f64> {
     let seen = sequence
         .frames

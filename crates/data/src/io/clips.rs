@@ -1,4 +1,4 @@
-//! `clips.csv`: where every clip is in every frame.
+//! `clips.csv`: the pose of every clip in every frame.
 
 use super::names::index_of;
 use super::source::shown;
@@ -13,12 +13,12 @@ use std::path::Path;
 
 const COLUMNS: [&str; 9] = ["frame", "clip", "tx_m", "ty_m", "tz_m", "qw", "qx", "qy", "qz"];
 
-/// A pose may move a clip by so much through the rounding of its quaternion, m: what cameras see.
+/// Largest displacement of a clip by the rounding of its quaternion, m: the resolution of cameras.
 const MOVED: f64 = 1e-4;
 
-/// Reads one pose a clip for every frame; rows may stand in any order.
+/// Reads one pose per clip and frame; rows may be in any order.
 ///
-/// * `reach` — the specimen's largest distance from the origin, about which poses turn, m
+/// * `reach` — largest distance of the specimen from the origin, the centre of rotation of the poses, m
 pub(super) fn read(path: &Path, clips: &[Clip], reach: f64) -> Result<Vec<Vec<Isometry3<f64>>>> {
     let table = Table::read(path)?;
     let ([frame, clip, tx, ty, tz, qw, qx, qy, qz], []) = table.require(COLUMNS, [])?;
@@ -34,7 +34,7 @@ pub(super) fn read(path: &Path, clips: &[Clip], reach: f64) -> Result<Vec<Vec<Is
             return Err(table.invalid(row, "frame", found, "one pose for every clip and frame"));
         }
     }
-    // Sorted by frame and clip, the n-th key is known.
+    // In order of frame and clip the n-th key is known.
     let keys = poses.keys().copied().map(Some).chain([None]);
     for (count, key) in keys.enumerate() {
         let expected = (count / clips.len(), count % clips.len());
@@ -52,7 +52,7 @@ pub(super) fn read(path: &Path, clips: &[Clip], reach: f64) -> Result<Vec<Vec<Is
     Ok(poses.chunks(clips.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Writes `clips.csv`, unless there are no clips.
+/// Writes `clips.csv` if there are clips.
 pub(super) fn write(path: &Path, clips: &[Clip], frames: &[Frame]) -> Result<()> {
     if clips.is_empty() {
         return Ok(());
@@ -69,7 +69,7 @@ pub(super) fn write(path: &Path, clips: &[Clip], frames: &[Frame]) -> Result<()>
     write_file(path, text.as_bytes())
 }
 
-/// Unit length within 1e-6 is accepted; what is not rounding of the last digits is then made exact.
+/// Accepts unit length within 1e-6 and normalises the quaternion, unless only the last digits are rounded.
 fn rotation(
     table: &Table,
     row: usize,
@@ -82,10 +82,10 @@ fn rotation(
         let expected = "unit length: qw first, then qx, qy, qz";
         return Err::<_, Error>(table.invalid(row, "qw,qx,qy,qz", found, expected));
     }
-    // Its length errs as much as its direction does; the last digits of a number always do.
+    // The error of the length estimates that of the direction; the last digits always carry rounding.
     if error > 1e-14 && error * reach > MOVED {
         let found = format!("a quaternion whose length errs by {error:.1e}, {reach:.0} m from the origin");
-        let expected = "more digits, or an origin nearby: poses turn about it";
+        let expected = "more digits, or a nearer origin: poses rotate about it";
         return Err(table.invalid(row, "qw,qx,qy,qz", found, expected));
     }
     Ok(if error < 1e-14 {

@@ -1,20 +1,20 @@
-//! What a folder holds.
+//! Contents of a folder.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Names, and whether each is a folder. Hidden files are left out.
+/// Names of entries, and whether each is a folder. Hidden files are omitted.
 pub(super) type Entries = BTreeMap<String, bool>;
 
-/// The names in a folder.
+/// Lists a folder.
 pub(super) fn entries(folder: &Path) -> Result<Entries> {
     let failed = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => Error::input(folder, None, "folder", "nothing", "a folder"),
         std::io::ErrorKind::NotADirectory => Error::input(folder, None, "folder", "a file", "a folder"),
         std::io::ErrorKind::PermissionDenied => {
-            Error::input(folder, None, "folder", "no permission to read it", "a folder that you may read")
+            Error::input(folder, None, "folder", "no permission to read it", "a readable folder")
         }
         _ => Error::io(folder, error),
     };
@@ -26,7 +26,7 @@ pub(super) fn entries(folder: &Path) -> Result<Entries> {
                 &entry.path(),
                 None,
                 "name",
-                "bytes that are no UTF-8",
+                "bytes that are not UTF-8",
                 "a name in UTF-8",
             ));
         };

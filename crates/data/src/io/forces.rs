@@ -1,4 +1,4 @@
-//! `forces.csv`: the cords' forces on the clips.
+//! `forces.csv`: cord forces on the clips.
 
 use super::names::{index_of, quoted};
 use super::table::Table;
@@ -11,7 +11,7 @@ use std::path::Path;
 const COLUMNS: [&str; 5] = ["frame", "clip", "fx_n", "fy_n", "fz_n"];
 const POINT: [&str; 3] = ["px_m", "py_m", "pz_m"];
 
-/// Reads the cords and gives them to their frames, in the order of the file.
+/// Reads the cords and assigns them to their frames in file order.
 pub(super) fn read(path: &Path, clips: &[Clip], frames: &mut [Frame]) -> Result<()> {
     let table = Table::read(path)?;
     let ([frame, clip, fx, fy, fz], point) = table.require(COLUMNS, POINT)?;

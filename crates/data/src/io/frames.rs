@@ -1,4 +1,4 @@
-//! `frames.csv`: when a frame was taken, and in which part of which load cycle.
+//! `frames.csv`: time, load cycle and phase of every frame.
 
 use super::source::shown;
 use super::table::Table;
@@ -11,7 +11,7 @@ const OPTIONAL: [&str; 3] = ["time_s", "cycle", "phase"];
 const PHASES: [(&str, Phase); 3] =
     [("loading", Phase::Loading), ("unloading", Phase::Unloading), ("hold", Phase::Hold)];
 
-/// Reads one row a frame, in any order.
+/// Reads one row per frame, in any order.
 pub(super) fn read(path: &Path, frames: &mut [Frame]) -> Result<()> {
     let table = Table::read(path)?;
     let ([number], [time, cycle, phase]) = table.require(["frame"], OPTIONAL)?;
@@ -38,7 +38,7 @@ pub(super) fn read(path: &Path, frames: &mut [Frame]) -> Result<()> {
     }
 }
 
-/// Writes `frames.csv` if anything is known of the frames.
+/// Writes `frames.csv` if any of these values is known.
 pub(super) fn write(path: &Path, frames: &[Frame]) -> Result<()> {
     let time = column("time", frames.iter().map(|frame| frame.time.map(|time| time.to_string())))?;
     let cycle = column("cycle", frames.iter().map(|frame| frame.cycle.map(|cycle| cycle.to_string())))?;
@@ -59,7 +59,7 @@ pub(super) fn write(path: &Path, frames: &[Frame]) -> Result<()> {
     write_file(path, text.as_bytes())
 }
 
-/// A column's fields; `None` if no frame has one.
+/// Fields of a column; `None` if no frame has a value.
 fn column(name: &'static str, fields: impl Iterator<Item = Option<String>>) -> Result<Option<Vec<String>>> {
     let fields: Vec<_> = fields.collect();
     let known = fields.iter().flatten().count();

@@ -1,4 +1,4 @@
-//! A JSON file whose errors name the line and the key.
+//! JSON parsing with errors that name line and key.
 
 use super::source::shown;
 use crate::error::{Error, Result};
@@ -9,20 +9,20 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::path::Path;
 
-/// The value that a text of JSON describes.
+/// Parses a JSON text.
 ///
 /// # Errors
-/// No JSON; a key unknown, missing or twice; a value of another type. All with line and key.
+/// Invalid JSON; an unknown, missing or duplicate key; a value of another type. All with line and key.
 pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut deserializer)
         .map_err(|error| explain(path, &error.path().to_string(), error.inner()))?;
-    // What follows the value is no part of it.
+    // Trailing text is invalid too.
     deserializer.end().map_err(|error| explain(path, ".", &error))?;
     Ok(value)
 }
 
-/// The same of a file that says by its `schema` which version it is: another one may well have other fields.
+/// Parses a JSON text after a check of the version in its `schema`: other versions may have other fields.
 ///
 /// # Errors
 /// As [`parse`]; another version.
@@ -38,7 +38,7 @@ pub fn parse_version<T: DeserializeOwned>(path: &Path, text: &str, schema: &str)
 fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
     let message = error.to_string();
     let message = message.rsplit_once(" at line ").map_or(&message[..], |(message, _)| message);
-    // A dot is the whole file, a question mark a place without a key.
+    // A dot stands for the whole file, a question mark for a place without a key.
     let key = if [".", "?"].contains(&key) { "" } else { key };
     let within = |name: &str| match key.strip_suffix(name) {
         Some(outer) if outer.is_empty() || outer.ends_with('.') => key.to_string(),
@@ -58,7 +58,7 @@ fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
         )
     } else {
         let (found, expected) = message.split_once(", expected ").unwrap_or((message, "JSON"));
-        // No value where the file begins: it is another kind of file.
+        // A file that does not start with a value is of another kind.
         let is_other = key.is_empty() && found == "expected value";
         let (found, expected) =
             if is_other { ("no JSON", "a JSON file, as material.json") } else { (found, expected) };
@@ -69,7 +69,7 @@ fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
     Error::input(path, error.line(), shown(&key), shown(found), expected.replace('`', ""))
 }
 
-/// A value that may be left out, but not stand there as null.
+/// A value that may be absent but not null.
 ///
 /// # Errors
 /// Null, or another type.
@@ -79,10 +79,10 @@ pub fn there<'de, D: Deserializer<'de>, T: DeserializeOwned>(
     T::deserialize(deserializer).map(Some)
 }
 
-/// A map with every key once: read plainly, the last of several would count in silence.
+/// A map with unique keys: by default the last duplicate would win silently.
 ///
 /// # Errors
-/// A key that stands twice.
+/// A duplicate key.
 pub fn unique<'de, D, K, V>(deserializer: D) -> std::result::Result<BTreeMap<K, V>, D::Error>
 where
     D: Deserializer<'de>,
@@ -100,7 +100,7 @@ where
 
         fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> std::result::Result<Self::Value, A::Error> {
             let mut map = BTreeMap::new();
-            // As text first, which names the key in the path of what is wrong below it.
+            // Read as text first, so that errors below include the key in their path.
             while let Some(name) = entries.next_key::<String>()? {
                 let key = K::deserialize(StrDeserializer::<A::Error>::new(&name))?;
                 if map.contains_key(&key) {

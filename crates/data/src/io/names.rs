@@ -1,11 +1,11 @@
-//! Clips by their names in tables.
+//! Clip names in tables.
 
 use super::source::{shortened, shown};
 use super::table::Table;
 use crate::error::Result;
 use crate::frame::Clip;
 
-/// The clip that a field names.
+/// Index of the clip named in a field.
 pub(super) fn index_of(table: &Table, row: usize, column: usize, clips: &[Clip]) -> Result<usize> {
     let name = table.text(row, column);
     clips.iter().position(|clip| clip.name == name).ok_or_else(|| {
@@ -15,7 +15,7 @@ pub(super) fn index_of(table: &Table, row: usize, column: usize, clips: &[Clip])
     })
 }
 
-/// A name as a field of a table.
+/// A name as a table field, quoted.
 pub(super) fn quoted(name: &str) -> String {
     if name.contains([',', '"', ';', '\t']) {
         format!("\"{}\"", name.replace('"', "\"\""))

@@ -1,7 +1,7 @@
 //! `positions.npy`: the measured shapes as one NumPy array (frames, vertices, 3).
 //!
-//! Written out by hand: the format is a short header before plain numbers, and a header that lies about its size must
-//! end in an error rather than in an overflow.
+//! The parser is written by hand: the format is a short header before plain numbers, and a header with a wrong size
+//! must give an error rather than an overflow.
 
 use super::source::{read_bytes, shown};
 use crate::error::{Error, Result};
@@ -60,31 +60,31 @@ pub(super) fn read(path: &Path, vertices: usize) -> Result<Vec<Shape>> {
     let frames = data.chunks_exact(3 * size * vertices);
     let shapes: Vec<Shape> = frames.map(|frame| frame.chunks_exact(3 * size).map(vertex).collect()).collect();
     let largest = shapes.iter().flatten().map(|position| position.amax()).fold(0.0, f64::max);
-    // What is infinite is refused where its frame and vertex are known.
+    // Infinite values are refused later, where frame and vertex are known.
     if size == 4 && largest > FAR && largest.is_finite() {
         let found = format!("float32 coordinates of {largest:.0} m");
-        let expected = "float64 so far away, or an origin nearby (or millimetres? then divide by 1000)";
+        let expected = "float64 at this distance, or a nearer origin (millimetres? divide by 1000)";
         return Err(refuse("data", found, expected));
     }
     Ok(shapes)
 }
 
-/// Beyond, float32 tells no two places apart by less than what cameras see, 0.06 mm. m.
+/// Coordinate beyond which float32 resolves no better than 0.06 mm, the accuracy of cameras, m.
 const FAR: f64 = 1e3;
 
-/// True if shapes reach so far that float32 would cost more than instruments do.
+/// True if shapes reach so far that float32 is coarser than the instruments.
 pub(super) fn are_far<'a>(shapes: impl IntoIterator<Item = &'a Shape>) -> bool {
     shapes.into_iter().flatten().any(|position| position.amax() > FAR)
 }
 
-/// The array as float32: 6 nm at 0.1 m, finer than any camera; as float64 where it reaches [`FAR`]. A frame without a
-/// shape is NaN throughout.
+/// Encodes the array as float32 (6 nm at 0.1 m, finer than any camera), or as float64 if it reaches [`FAR`]. A frame
+/// without a shape is all NaN.
 pub(super) fn written(shapes: &[Option<&Shape>], vertices: usize) -> Vec<u8> {
     let far = are_far(shapes.iter().copied().flatten());
     let (descr, frames) = (if far { "<f8" } else { "<f4" }, shapes.len());
     let mut header =
         format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({frames}, {vertices}, 3), }}");
-    // The header ends with a line feed, and the data starts at a multiple of 64 bytes.
+    // The header ends with a line feed, and the data start at a multiple of 64 bytes.
     while !(MAGIC.len() + 4 + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
     }
@@ -118,7 +118,7 @@ fn split(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((std::str::from_utf8(header).ok()?, data))
 }
 
-/// The text of an entry of the header, which is a Python dictionary.
+/// Text of an entry of the header, a Python dictionary.
 fn value<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let at = [format!("'{key}'"), format!("\"{key}\"")]
         .iter()
@@ -128,7 +128,7 @@ fn value<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     Some(text[..end].trim())
 }
 
-/// The numbers of `(12, 100, 3)`.
+/// Numbers of a tuple such as `(12, 100, 3)`.
 fn numbers(shape: &str) -> Option<Vec<usize>> {
     let inner = shape.strip_prefix('(')?.strip_suffix(')')?;
     inner.split(',').map(str::trim).filter(|text| !text.is_empty()).map(|text| text.parse().ok()).collect()

@@ -1,9 +1,9 @@
-//! Numbers as text: finite, with a decimal point and an ASCII sign, or refused with the reason.
+//! Number parsing: finite, with a decimal point and an ASCII sign; errors name the reason.
 
-/// Reads a finite number.
+/// Parses a finite number.
 ///
 /// # Errors
-/// What was expected, if the text is not one.
+/// The expected form.
 pub(super) fn number(text: &str) -> Result<f64, &'static str> {
     if text.contains('\u{2212}') {
         return Err("a number with the ASCII minus sign (-), not the Unicode one");
@@ -19,13 +19,13 @@ pub(super) fn number(text: &str) -> Result<f64, &'static str> {
     }
 }
 
-/// Refuses a length that is not above 0 and at most so many metres.
+/// Checks that a length is positive and at most `most` metres.
 ///
 /// # Errors
-/// What was expected; the unit that a longer one may be in.
+/// The expected range, and the unit that a longer value may be in.
 pub fn check_length(value: f64, most: f64) -> Result<(), String> {
     let unit = match value > most && value.is_finite() {
-        // Nothing is as thick in centimetres as a sheet is wide in metres.
+        // A small limit is that of a thickness, which is not given in centimetres.
         true if most < 1.0 => " (millimetres?)",
         true => " (millimetres or centimetres?)",
         false => "",
@@ -37,11 +37,11 @@ pub fn check_length(value: f64, most: f64) -> Result<(), String> {
     }
 }
 
-/// Reads a finite number, or `nan` for what was not observed.
+/// Parses a finite number, or `nan` for an unobserved value.
 ///
 /// # Errors
-/// What was expected, if the text is neither.
+/// The expected form.
 pub(super) fn number_or_unseen(text: &str) -> Result<f64, &'static str> {
-    // Printed with its sign bit a nan may have a sign.
+    // NaN printed with its sign bit may have a sign.
     if text.trim_start_matches(['+', '-']).eq_ignore_ascii_case("nan") { Ok(f64::NAN) } else { number(text) }
 }

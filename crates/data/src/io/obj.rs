@@ -1,4 +1,4 @@
-//! Wavefront OBJ: only what a measured cloth needs of it, every error with its line.
+//! Wavefront OBJ: the subset needed for measured cloth, with the line in every error.
 
 use super::number::{number, number_or_unseen};
 use super::source::{read_text, shown};
@@ -10,10 +10,10 @@ use nalgebra::{Vector2, Vector3};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// A corner of a face: its vertex and its material coordinates, both from 0.
+/// Corner of a face: indices of its vertex and its material coordinates, both from 0.
 type Corner = (usize, Option<usize>);
 
-/// The axes of space that the yarns of a flat mesh lie along at rest.
+/// World directions of the yarns of a flat mesh at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YarnAxes {
     /// Along weft.
@@ -22,16 +22,16 @@ pub struct YarnAxes {
     pub warp: Vector3<f64>,
 }
 
-/// What to do about the coordinates of a texture.
+/// Remedy for texture coordinates.
 const TEXTURE: &str = "vt in metres; these, from 0 to 1, are texture coordinates: multiply u by the sample's width and v by its height";
 
 /// Reads a rest mesh; polygons are split into triangles from their first corner.
 ///
-/// * `axes` — the material coordinates are the rest positions' components along these, and `vt`, which may be those of a
-///   texture, do not count
+/// * `axes` — if given, the material coordinates are the components of the rest positions along them, and `vt`
+///   (possibly texture coordinates) is ignored
 ///
 /// # Errors
-/// No mesh, or one that no cloth can have, with its line; no `vt` where there are no `axes`.
+/// A file without a valid cloth mesh, with the line; a file without `vt` if no `axes` are given.
 pub fn read_mesh(path: &Path, axes: Option<YarnAxes>) -> Result<Mesh> {
     let mut obj = Obj::read(path)?;
     if let Some(YarnAxes { weft, warp }) = axes {
@@ -44,8 +44,8 @@ pub fn read_mesh(path: &Path, axes: Option<YarnAxes>) -> Result<Mesh> {
     obj.mesh()
 }
 
-/// The statements of a text without comments, each with the line that it begins in: a `\` at the end of a line joins the
-/// next one to it.
+/// Statements of a text without comments, each with its first line; a `\` at the end of a line continues the
+/// statement.
 fn statements(text: &str) -> Vec<(usize, String)> {
     let mut statements: Vec<(usize, String)> = Vec::new();
     let mut goes_on = false;
@@ -61,7 +61,7 @@ fn statements(text: &str) -> Vec<(usize, String)> {
     statements
 }
 
-/// What stands in an OBJ file.
+/// Contents of an OBJ file.
 pub(super) struct Obj {
     path: PathBuf,
     vertices: Vec<(usize, Vector3<f64>)>,
@@ -70,7 +70,7 @@ pub(super) struct Obj {
 }
 
 impl Obj {
-    /// Reads vertices (`nan` = not observed), material coordinates and faces; normals, groups and materials are skipped.
+    /// Reads vertices (`nan` = unobserved), material coordinates and faces; skips normals, groups and materials.
     pub(super) fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
         let (vertices, coordinates, faces) = Default::default();
@@ -155,7 +155,7 @@ impl Obj {
         Ok(())
     }
 
-    /// The first `N` numbers; more (a weight, a colour) are skipped.
+    /// Parses the first `N` numbers; further ones (a weight, a colour) are skipped.
     fn numbers<const N: usize>(
         &self,
         line: usize,
@@ -179,7 +179,7 @@ impl Obj {
         Ok(values)
     }
 
-    /// `v`, `v/vt`, `v/vt/vn` or `v//vn`.
+    /// Parses `v`, `v/vt`, `v/vt/vn` or `v//vn`.
     fn corner(&self, line: usize, word: &str) -> Result<Corner> {
         let mut parts = word.split('/');
         let vertex = self.index(line, "v", parts.next().unwrap_or_default(), self.vertices.len())?;
@@ -190,7 +190,7 @@ impl Obj {
         Ok((vertex, coordinate))
     }
 
-    /// An index of OBJ, from 1 or backwards from the last one so far, as an index from 0.
+    /// Converts an OBJ index, from 1 or backwards from the latest element, to an index from 0.
     fn index(&self, line: usize, field: &str, text: &str, so_far: usize) -> Result<usize> {
         let refuse = |expected: &str| self.invalid(line, &format!("f {field}"), shown(text), expected);
         match text.parse::<i64>() {
@@ -220,7 +220,7 @@ impl Obj {
         ))
     }
 
-    /// The one pair of material coordinates of every vertex.
+    /// The unique material coordinates of every vertex.
     fn material(&self) -> Result<Vec<Vector2<f64>>> {
         let mut found: Vec<Option<(usize, Vector2<f64>)>> = vec![None; self.vertices.len()];
         for (line, corners) in &self.faces {
@@ -253,7 +253,7 @@ impl Obj {
             .collect()
     }
 
-    /// The line of the vertex or face that a defect names.
+    /// Line of the vertex or face named by a defect.
     fn line_of(&self, defect: &Defect, triangles: &[[usize; 3]], lines: &[usize]) -> Option<usize> {
         let vertex = |vertex: usize| self.vertices.get(vertex).map(|(line, _)| *line);
         let triangle = |triangle: usize| lines.get(triangle).copied();
@@ -285,20 +285,20 @@ impl Obj {
     }
 }
 
-/// True for coordinates as those of a texture are: from 0 to 1 in both directions.
+/// True for texture-like coordinates: from 0 to 1 in both directions.
 fn fill_unit_square(coordinates: &[Vector2<f64>]) -> bool {
     let [low, high] = bounds(coordinates.iter().copied());
-    // A texture leaves a margin, at most.
+    // A texture leaves at most a margin.
     low.amin() >= 0.0 && high.amax() <= 1.0 && (high - low).amin() > 0.9
 }
 
-/// A mesh as the text of an OBJ file that reads back to the same bits.
+/// OBJ text of a mesh; it reads back bit-identical.
 pub(super) fn written(mesh: &Mesh) -> String {
     let comment = "# v = rest position [m], vt = material coordinates [m]: u = weft, v = warp\n";
     comment.to_string() + &shape(mesh, &mesh.positions)
 }
 
-/// The same mesh with its vertices elsewhere.
+/// OBJ text of the mesh with other vertex positions.
 pub(super) fn shape(mesh: &Mesh, positions: &[Vector3<f64>]) -> String {
     let mut text = String::new();
     // Writing into a String cannot fail.

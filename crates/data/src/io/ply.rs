@@ -1,4 +1,4 @@
-//! Vertices of a PLY file, text or binary; a shape as one.
+//! PLY files: reads vertices from text or binary, writes a shape as text.
 
 use super::number::number_or_unseen;
 use super::source::{decoded, read_bytes, shown};
@@ -12,7 +12,7 @@ use ply_rs_bw::ply::{
 use std::fmt::Write;
 use std::path::Path;
 
-/// Reads x, y and z of the element `vertex`; NaN, in a text `nan`, = not observed.
+/// Reads x, y and z of the element `vertex`; NaN (`nan` in text) = unobserved.
 pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
     let mut bytes = read_bytes(path)?;
     if !is_binary(&bytes) {
@@ -23,7 +23,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
         let reason = message.lines().next().unwrap_or_default();
         let reason =
             reason.split_once(": ").filter(|_| error.line().is_some()).map_or(reason, |(_, reason)| reason);
-        // The reader counts one line more where the file ends within one.
+        // The library counts one line too many if the file ends within a line.
         let lines = bytes.split(|&byte| byte == b'\n').count();
         let line = error.line().filter(|_| text).map(|line| line.min(lines));
         Error::input(path, line, "PLY", shown(reason), "a PLY file with x, y and z of every vertex")
@@ -55,10 +55,10 @@ pub(super) fn read(path: &Path) -> Result<Vec<Vector3<f64>>> {
     Ok(vertices.into_iter().map(|vertex| vertex.0).collect())
 }
 
-/// The axes, as properties of a vertex.
+/// Coordinate properties of a vertex.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The vertices of a text, which has a line a row; the parser of binary files knows no `nan`.
+/// Reads vertices from a text file, one line per row; the library parser does not accept `nan`.
 fn of_text(path: &Path, text: &str, elements: &KeyMap<ElementDef>) -> Result<Vec<Vector3<f64>>> {
     let rows = (1..).zip(text.lines()).skip_while(|(_, line)| line.trim() != "end_header").skip(1);
     let mut vertices = Vec::new();
@@ -78,7 +78,7 @@ fn of_text(path: &Path, text: &str, elements: &KeyMap<ElementDef>) -> Result<Vec
     Ok(vertices)
 }
 
-/// The vertex of a row of a text.
+/// Parses the vertex in a text row.
 fn vertex_of(path: &Path, line: usize, row: &str, element: &ElementDef) -> Result<Vector3<f64>> {
     let mut words = row.split_whitespace();
     let mut vertex = Vector3::zeros();
@@ -103,14 +103,14 @@ fn vertex_of(path: &Path, line: usize, row: &str, element: &ElementDef) -> Resul
     }
 }
 
-/// True if the header says so: what stands below it is then no text.
+/// True if the header declares a binary format; the body is not text then.
 fn is_binary(bytes: &[u8]) -> bool {
     const FORMAT: &[u8] = b"format binary";
     let header = bytes.windows(10).position(|words| words == b"end_header").unwrap_or(bytes.len());
     bytes[..header].windows(FORMAT.len()).any(|words| words == FORMAT)
 }
 
-/// A mesh with its vertices somewhere, as text.
+/// Text PLY of a mesh with the given vertex positions.
 pub(super) fn shape(mesh: &Mesh, positions: &[Vector3<f64>]) -> String {
     let mut text = format!(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
@@ -128,11 +128,12 @@ pub(super) fn shape(mesh: &Mesh, positions: &[Vector3<f64>]) -> String {
     text
 }
 
-/// An element takes a byte a row at least: a header that promises more would keep the reader busy for ever.
+/// Checks the declared row count against the file size: each row takes at least one byte, and a false count would
+/// keep the reader busy indefinitely.
 fn check_size(path: &Path, element: &ElementDef, bytes: usize) -> Result<()> {
     if element.properties.is_empty() {
         let field = format!("element {}", shown(&element.name));
-        return Err(Error::input(path, None, field, "no property", "one at least"));
+        return Err(Error::input(path, None, field, "no property", "at least one"));
     }
     if element.count > bytes {
         let field = format!("element {}", shown(&element.name));
@@ -141,13 +142,13 @@ fn check_size(path: &Path, element: &ElementDef, bytes: usize) -> Result<()> {
             None,
             field,
             element.count.to_string(),
-            "as many rows as the file holds",
+            "at most the number of rows in the file",
         ));
     }
     Ok(())
 }
 
-/// A vertex while it is read; every other property is passed over.
+/// A vertex while it is read; other properties are skipped.
 struct Vertex(Vector3<f64>);
 
 impl PropertyAccess for Vertex {

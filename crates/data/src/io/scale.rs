@@ -1,4 +1,4 @@
-//! Another unit read as metres: lengths that no cloth can reach.
+//! Detects other units read as metres: lengths implausible for cloth.
 
 use super::npy::are_far;
 use super::shapes;
@@ -8,15 +8,15 @@ use cloth_sim::mesh::Mesh;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
-/// No specimen is larger, m.
+/// Largest plausible specimen, m.
 const LARGEST_SPECIMEN: f64 = 10.0;
-/// What is expected where the length does not tell the unit.
+/// Expectation if the length does not reveal the unit.
 const METRES: &str = "metres (convert millimetres or centimetres to metres?)";
-/// No fabric stretches so far.
+/// Largest plausible stretch ratio of a fabric.
 const LARGEST_STRETCH: f64 = 10.0;
 
-/// Refuses a specimen of more than 10 m, a shape most of whose edges are ten times as long as at rest, and clips that
-/// are ten specimens apart.
+/// Refuses specimens of more than 10 m, shapes with most edges ten times as long as at rest, and clips more than ten
+/// specimen sizes apart.
 pub(super) fn check(folder: &Path, mesh: &Mesh, clips: &[Clip], frames: &[Frame]) -> Result<()> {
     let refuse = |file: &str, field: String, found: String| {
         Err(Error::input(&folder.join(file), None, field, found, METRES))
@@ -56,10 +56,10 @@ fn centre(mesh: &Mesh, clip: &Clip) -> Point3<f64> {
     Point3::from(sum / clip.vertices.len() as f64)
 }
 
-/// How many times as long as at rest each triangle side is that was observed. Single outliers are for the fit to flag.
-/// Shapes are judged in the precision that they are written in: what was read is not refused once it was written.
+/// Stretch ratio of each observed triangle side. Single outliers are left to the fit. Shapes are evaluated in the
+/// precision in which they are written, so that a set that was read can be written and read again.
 ///
-/// * `far` — that is double precision, else single
+/// * `far` — double precision if true, else single
 fn stretches(mesh: &Mesh, shape: &[Vector3<f64>], far: bool) -> Vec<f64> {
     let sides = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let written = |vertex: usize| shape[vertex].map(|c| if far { c } else { f64::from(c as f32) });
@@ -67,11 +67,11 @@ fn stretches(mesh: &Mesh, shape: &[Vector3<f64>], far: bool) -> Vec<f64> {
         let rest = (mesh.positions[to] - mesh.positions[from]).norm();
         (written(to) - written(from)).norm() / rest
     };
-    // An edge that was not observed has no length: NaN.
+    // Unobserved edges have length NaN.
     sides.map(stretch).filter(|stretch| !stretch.is_nan()).collect()
 }
 
-/// What to do about sides so many times too long.
+/// The expectation for shapes that are too long by these ratios.
 fn in_metres(mut stretches: Vec<f64>) -> &'static str {
     stretches.sort_by(f64::total_cmp);
     match stretches[stretches.len() / 2] {
@@ -94,7 +94,8 @@ mod tests {
         let material = corners.map(|[u, v]| Vector2::new(u, v)).to_vec();
         let positions = corners.map(|[u, v]| Vector3::new(u, v, 0.0)).to_vec();
         let mesh = Mesh::new(positions, material, vec![[0, 1, 2]]).unwrap();
-        // Two sides of three are ten times as long as at rest; in single precision a little more, or less.
+        // Two of three sides are ten times as long as at rest, slightly more, or slightly less after rounding to
+        // single precision.
         for length in [0.8, 0.8 * (1.0 + 1e-9), 0.8 * (1.0 - 1e-9), 0.8000001] {
             let shape = [[0.0, 0.0, 0.0], [length, 0.0, 0.0], [0.0, 0.5 * length, 0.0]].map(Vector3::from);
             let written = shape.map(|place| place.map(|c| f64::from(c as f32)));

@@ -1,5 +1,4 @@
-//! Shapes of a sheet one after the other, as files that other programs read, and [`read_sequence`](super::read_sequence)
-//! too.
+//! Writes a series of shapes of a sheet as files for other programs and for [`read_sequence`](super::read_sequence).
 
 use super::{npy, obj, ply};
 use crate::error::{Error, Result};
@@ -8,7 +7,7 @@ use cloth_sim::mesh::Mesh;
 use nalgebra::Vector3;
 use std::path::Path;
 
-/// In what form.
+/// File format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShapeFormat {
     /// `frames/0000.obj` and so on.
@@ -19,12 +18,12 @@ pub enum ShapeFormat {
     Npy,
 }
 
-/// Writes `mesh.obj`, the sheet at rest, and its shapes into a folder that exists.
+/// Writes the rest mesh `mesh.obj` and the shapes into an existing folder.
 ///
 /// * `shapes` — a position of every vertex, m
 ///
 /// # Errors
-/// What the operating system refuses.
+/// A failed system call.
 pub fn write_shapes(
     folder: &Path,
     mesh: &Mesh,

@@ -1,4 +1,4 @@
-//! The measured shapes of a sequence: one array, or one mesh file a frame.
+//! Measured shapes of a sequence: one array, or one mesh file per frame.
 
 use super::entries::{Entries, entries};
 use super::npy::{self, Shape};
@@ -11,7 +11,7 @@ use crate::store::write_file;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads the shapes of all frames; `None` if the folder has none. A frame where nothing was observed is `None` too.
+/// Reads the shapes of all frames; `None` if the folder has none. A frame without observed vertices is `None` too.
 pub(super) fn read(folder: &Path, present: &Entries, vertices: usize) -> Result<Option<Vec<Option<Shape>>>> {
     let has = |name: &str| present.contains_key(name);
     let (array, files) = (folder.join("positions.npy"), folder.join("frames"));
@@ -30,7 +30,7 @@ pub(super) fn read(folder: &Path, present: &Entries, vertices: usize) -> Result<
     checked.collect::<Result<_>>().map(Some)
 }
 
-/// The file that a frame's shape stands in.
+/// File that holds the shape of a frame.
 pub(super) fn file_of(folder: &Path, frame: usize) -> PathBuf {
     let files = folder.join("frames");
     let is_its = |name: &String| name.split('.').next().and_then(|stem| stem.parse().ok()) == Some(frame);
@@ -47,7 +47,7 @@ pub(super) fn write(folder: &Path, frames: &[Frame], vertices: usize) -> Result<
     write_file(&folder.join("positions.npy"), &npy::written(&shapes, vertices))
 }
 
-/// Reads `0000.obj`, `0001.ply`, … of a folder.
+/// Reads `0000.obj`, `0001.ply`, … from a folder.
 fn read_files(folder: &Path, vertices: usize) -> Result<Vec<(PathBuf, Shape)>> {
     let mut files = BTreeMap::new();
     for name in entries(folder)?.into_keys() {
@@ -77,7 +77,7 @@ fn read_files(folder: &Path, vertices: usize) -> Result<Vec<(PathBuf, Shape)>> {
             None,
             "file",
             format!("frame {found}"),
-            format!("frame {expected}: none may miss"),
+            format!("frame {expected}: frames are numbered without gaps"),
         ));
     }
     let read = |path: PathBuf| {
@@ -92,13 +92,13 @@ fn read_files(folder: &Path, vertices: usize) -> Result<Vec<(PathBuf, Shape)>> {
     files.into_values().map(read).collect()
 }
 
-/// A vertex is observed in all three coordinates or in none.
+/// Checks that each vertex is observed in all three coordinates or in none.
 fn checked(path: &Path, frame: usize, shape: Shape) -> Result<Option<Shape>> {
     for (vertex, position) in shape.iter().enumerate() {
         let refuse = |found: String, expected: &str| {
             Err(Error::input(path, None, format!("frame {frame} vertex {vertex}"), found, expected))
         };
-        // Shapes are written as float32: what that cannot hold would come back as infinite.
+        // Shapes are written as float32: larger values would come back as infinite.
         if let Some(value) = position.iter().find(|value| (**value as f32).is_infinite()) {
             let expected = "a coordinate below 3.4e38 m, or NaN where the vertex was not observed";
             return refuse(format!("{value:e}"), expected);

@@ -1,14 +1,14 @@
-//! A file's bytes or text, refused early where no reader could make sense of them.
+//! Reads the bytes or the text of a file; unreadable kinds of file are refused early.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// No measurement needs more, and everything is read at once.
+/// Largest file size: files are read into memory, and no measurement needs more.
 const LARGEST: u64 = 2 << 30;
 
-/// What the files of spreadsheet programs begin with: ZIP, and the compound files before it.
+/// Signatures of spreadsheet files: ZIP and the older compound files.
 const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xD0\xCF\x11\xE0"];
 
 /// Reads a regular, non-empty file of at most 2 GiB.
@@ -17,7 +17,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     let failed = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => Error::input(path, None, "file", "nothing", "a file"),
         ErrorKind::PermissionDenied => {
-            Error::input(path, None, "file", "no permission to read it", "a file that you may read")
+            Error::input(path, None, "file", "no permission to read it", "a readable file")
         }
         _ => Error::io(path, error),
     };
@@ -30,7 +30,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     }
     let mut bytes = Vec::new();
     if about.len() <= LARGEST {
-        // The limit holds even if the file grows meanwhile.
+        // The limit applies even if the file grows while it is read.
         File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(failed)?;
     }
     match bytes.len() as u64 {
@@ -46,7 +46,7 @@ pub fn read_text(path: &Path) -> Result<String> {
     decoded(path, read_bytes(path)?)
 }
 
-/// The text of bytes that were read already.
+/// Decodes bytes that were read already.
 pub(crate) fn decoded(path: &Path, mut bytes: Vec<u8>) -> Result<String> {
     let refuse = |offset: usize, found: String| {
         Err(Error::input(path, line_at(&bytes, offset), "text", found, "UTF-8 (save the file as UTF-8)"))
@@ -79,7 +79,7 @@ pub(crate) fn decoded(path: &Path, mut bytes: Vec<u8>) -> Result<String> {
     Ok(if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n") } else { text })
 }
 
-/// The line, from 1, that a byte stands in; it may end in CR, LF or both.
+/// Line, from 1, that contains a byte; lines may end in CR, LF or both.
 fn line_at(bytes: &[u8], offset: usize) -> usize {
     let ends = |&at: &usize| match bytes[at] {
         b'\n' => true,
@@ -89,12 +89,12 @@ fn line_at(bytes: &[u8], offset: usize) -> usize {
     1 + (0..offset).filter(ends).count()
 }
 
-/// What stands in a file, fit for one line of a message.
+/// Formats file content for a one-line message.
 pub fn shown(text: &str) -> String {
     shortened(text, 60)
 }
 
-/// The same, up to so many characters.
+/// As [`shown`], with a maximum number of characters.
 pub fn shortened(text: &str, longest: usize) -> String {
     if text.trim().is_empty() {
         return if text.is_empty() { "nothing" } else { "blanks" }.into();

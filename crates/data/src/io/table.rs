@@ -1,6 +1,6 @@
-//! Tables of comma-separated values whose errors name file, line and column.
+//! Comma-separated tables with errors that name file, line and column.
 //!
-//! Spaces around a field and blank lines do not matter. Separators and decimal marks are never guessed.
+//! Spaces around fields and blank lines are ignored. Separators and decimal marks are never guessed.
 
 use super::number::number;
 use super::source::{read_text, shortened, shown};
@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::path::{Path, PathBuf};
 
-/// A table as it stands in a file: named columns, and rows of as many fields.
+/// A table as stored in a file: named columns, and rows with the same number of fields.
 #[derive(Debug, Clone)]
 pub struct Table {
     path: PathBuf,
@@ -21,11 +21,11 @@ pub struct Table {
 impl Table {
     /// Reads a table whose first line is its header.
     ///
-    /// Columns at the end that have neither a name nor a field are none: some programs end every row with a comma.
+    /// Trailing columns without name and content are dropped: some programs end every row with a comma.
     ///
     /// # Errors
-    /// Not a readable UTF-8 file; another separator than the comma; an open quote; a column without a name or twice
-    /// the same; a row with more or fewer fields than the header.
+    /// A file that is not readable UTF-8; a separator other than the comma; an open quote; an unnamed or duplicate
+    /// column; a row with more or fewer fields than the header.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Self::of(path, &read_text(path)?, 0)?;
         table.check_header()?;
@@ -33,11 +33,11 @@ impl Table {
         Ok(table)
     }
 
-    /// Reads a table of another program, in which some columns are asked for: its header is the first line that names
-    /// all of them; what stands above is passed over, and other columns may be named as they like.
+    /// Reads a table of another program from which certain columns are needed. The header is the first line that
+    /// names all of them; lines above it are skipped, and other columns may have any name.
     ///
     /// # Errors
-    /// As [`Table::read`]; no line that names all of the columns.
+    /// As [`Table::read`]; a file without a line that names all of the columns.
     pub fn read_columns(path: &Path, columns: &[&str]) -> Result<Self> {
         let text = read_text(path)?;
         let table = Self::of(path, &text, header_place(&text, columns))?;
@@ -46,7 +46,7 @@ impl Table {
         Ok(table)
     }
 
-    /// The table below a line, from 0, of a text.
+    /// The table that starts at a line, counted from 0, of a text.
     fn of(path: &Path, text: &str, header: usize) -> Result<Self> {
         let start: usize = text.split_inclusive('\n').take(header).map(str::len).sum();
         let in_file = |line: usize| line + header;
@@ -66,7 +66,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Drops columns at the end that have neither a name nor a field.
+    /// Drops trailing columns without name and content.
     fn drop_nothing(&mut self) {
         let named = (0..self.header.len()).rfind(|&column| !self.header[column].is_empty());
         let named = named.map_or(0, |last| last + 1);
@@ -77,10 +77,10 @@ impl Table {
         }
     }
 
-    /// Finds columns by their names: where the required ones are, and the optional ones that exist.
+    /// Finds columns by name: the positions of the required ones, and of the optional ones present.
     ///
     /// # Errors
-    /// A required column is missing, or one exists that is neither required nor optional.
+    /// A missing required column, or one that is neither required nor optional.
     pub fn require<const R: usize, const O: usize>(
         &self,
         required: [&str; R],
@@ -111,32 +111,32 @@ impl Table {
         Ok((places, optional.map(|name| self.column(name))))
     }
 
-    /// True if a column is of the same quantity as one of some name, in whatever unit.
+    /// True if a column measures the same quantity as the given name, in any unit.
     pub fn has_quantity(&self, name: &str) -> bool {
         self.header.iter().any(|found| same_quantity(found, name))
     }
 
-    /// The columns' names, for messages.
+    /// Column names, for messages.
     pub fn names(&self) -> String {
         self.header.iter().map(shown).collect::<Vec<_>>().join(", ")
     }
 
-    /// Where a column is, if it exists.
+    /// Index of a column, if present.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|found| found == name)
     }
 
-    /// Where a column is that there must be.
+    /// Index of a required column.
     ///
     /// # Errors
-    /// It is missing, or there twice.
+    /// A missing or duplicate column.
     pub fn place(&self, name: &str) -> Result<usize> {
         let mut places = (0..self.header.len()).filter(|&column| &self.header[column] == name);
         match (places.next(), places.next()) {
             (Some(place), None) => Ok(place),
             (Some(_), Some(_)) => {
                 let found = format!("{} twice", shown(name));
-                Err(self.bad_header("header", found, "every column that is asked for once"))
+                Err(self.bad_header("header", found, "every requested column once"))
             }
             (None, _) => {
                 let names = shortened(&self.header.iter().collect::<Vec<_>>().join(", "), 300);
@@ -146,7 +146,7 @@ impl Table {
         }
     }
 
-    /// A column's name.
+    /// Name of a column.
     pub fn name(&self, column: usize) -> &str {
         &self.header[column]
     }
@@ -156,36 +156,36 @@ impl Table {
         self.rows.len()
     }
 
-    /// The line, from 1, that a row starts in.
+    /// First line, from 1, of a row.
     pub fn line(&self, row: usize) -> usize {
         self.rows[row].0
     }
 
-    /// A field's text.
+    /// Text of a field.
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()
     }
 
-    /// A field as a finite number.
+    /// Parses a field as a finite number.
     ///
     /// # Errors
-    /// It is not one.
+    /// Any other content.
     pub fn number(&self, row: usize, column: usize) -> Result<f64> {
         let text = self.text(row, column);
         number(text).map_err(|expected| self.invalid(row, &self.header[column], shown(text), expected))
     }
 
-    /// A field as a whole number from 0.
+    /// Parses a field as a non-negative integer.
     ///
     /// # Errors
-    /// It is not one.
+    /// Any other content.
     pub fn index(&self, row: usize, column: usize) -> Result<usize> {
         let text = self.text(row, column);
         text.parse()
             .map_err(|_| self.invalid(row, &self.header[column], shown(text), "a whole number from 0"))
     }
 
-    /// Bad input in a row.
+    /// Invalid input in a row.
     pub fn invalid(
         &self,
         row: usize,
@@ -196,12 +196,12 @@ impl Table {
         Error::input(&self.path, self.rows[row].0, shown(field), found, expected)
     }
 
-    /// Bad input in the header.
+    /// Invalid input in the header.
     pub fn bad_header(&self, field: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         Error::input(&self.path, self.header_line, shown(field), found, expected)
     }
 
-    /// Bad input in the table as a whole.
+    /// Invalid input in the table as a whole.
     pub fn incomplete(&self, field: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         Error::input(&self.path, None, shown(field), found, expected)
     }
@@ -237,7 +237,7 @@ impl Table {
     }
 }
 
-/// True for a row whose commas may be decimal ones: what is too many are digits alone, and no number has a point.
+/// True if the commas of a row may be decimal marks: all surplus fields are digits only, and no number has a point.
 fn has_decimal_commas(record: &StringRecord, expected: usize) -> bool {
     let is_digits = |field: &&str| !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_digit());
     let has_point = |field: &str| field.contains('.') && field.parse::<f64>().is_ok();
@@ -245,8 +245,8 @@ fn has_decimal_commas(record: &StringRecord, expected: usize) -> bool {
     record.len() > expected && fractions >= record.len() - expected && !record.iter().any(has_point)
 }
 
-/// How many lines of a text stand above the header: the first line that names all of the columns, or else the last of
-/// those that name most.
+/// Number of lines above the header: before the first line that names all of the columns, or else the last of those
+/// that name most of them.
 fn header_place(text: &str, columns: &[&str]) -> usize {
     let named = |line: &str| {
         let of = |separator: &u8| {
@@ -260,7 +260,7 @@ fn header_place(text: &str, columns: &[&str]) -> usize {
     };
     let mut best = (0, 0);
     for (place, line) in text.lines().enumerate() {
-        // A name may be quoted, but stands in the line.
+        // Names may be quoted, but occur literally in the line.
         let may_be = columns.iter().filter(|column| line.contains(**column)).count() >= best.1.max(1);
         let count = if may_be { named(line) } else { 0 };
         if count > 0 && count >= best.1 {
@@ -273,24 +273,24 @@ fn header_place(text: &str, columns: &[&str]) -> usize {
     best.0
 }
 
-/// How many lines stand above the header of another program's table: see [`Table::read_columns`].
+/// Number of lines above the header of another program's table: see [`Table::read_columns`].
 ///
 /// # Errors
-/// Not a readable UTF-8 file.
+/// A file that is not readable UTF-8.
 pub fn lines_above_header(path: &Path, columns: &[&str]) -> Result<usize> {
     let text = read_text(path)?;
     let above = text.lines().take(header_place(&text, columns));
     Ok(above.filter(|line| !line.trim().is_empty()).count())
 }
 
-/// A header of semicolons or tabs and no comma: quotes would be read wrong if it went on.
+/// Refuses a header with semicolons or tabs and no comma before quotes are parsed.
 ///
 /// * `above` — lines of the file above the text
 fn check_separator(path: &Path, text: &str, above: usize) -> Result<()> {
     let Some((line, header)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
         return Ok(());
     };
-    // What stands in quotes is no separator.
+    // Quoted text contains no separators.
     let bare: String = header.split('"').step_by(2).collect();
     for (separator, shown) in [(';', "semicolons (;)"), ('\t', "tabs")] {
         if bare.trim().contains(separator) && !bare.contains(',') {
@@ -303,7 +303,7 @@ fn check_separator(path: &Path, text: &str, above: usize) -> Result<()> {
     Ok(())
 }
 
-/// The records with the lines that they start in.
+/// Records with their first lines.
 fn records(path: &Path, text: &str) -> Result<Vec<(usize, StringRecord)>> {
     let mut reader =
         ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(text.as_bytes());
@@ -311,7 +311,7 @@ fn records(path: &Path, text: &str) -> Result<Vec<(usize, StringRecord)>> {
     let mut records = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| Error::input(path, line, "row", error.to_string(), "a row"))?;
-        // The record's own position is before the blank lines that precede it.
+        // The position of a record precedes blank lines before it.
         let before = record.position().map_or(counted, |position| position.byte() as usize);
         let blank = text[before..].bytes().take_while(|&byte| byte == b'\n').count();
         line += text[counted..before + blank].matches('\n').count();
@@ -321,14 +321,14 @@ fn records(path: &Path, text: &str) -> Result<Vec<(usize, StringRecord)>> {
     Ok(records)
 }
 
-/// The line of a quote that opens a field and does not close at the field's end.
+/// Line of a quote that opens a field and is not closed at the end of the field.
 fn open_quote(text: &str) -> Option<usize> {
     let (mut line, mut field_starts, mut opened) = (1, true, None);
     let mut characters = text.chars().peekable();
     while let Some(character) = characters.next() {
         line += usize::from(character == '\n');
         if opened.is_some() {
-            // A doubled quote is a quote within the field.
+            // A doubled quote is a literal quote within the field.
             if character == '"' && characters.next_if_eq(&'"').is_none() {
                 if characters.peek().is_some_and(|next| !matches!(next, ',' | '\n' | ' ' | '\t')) {
                     return opened;
@@ -347,7 +347,7 @@ fn open_quote(text: &str) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// A table of another program, of which force and travel are asked for.
+    /// A table of another program, read for force and travel.
     fn read(text: &str) -> Result<Table> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
@@ -375,7 +375,7 @@ mod tests {
         assert_eq!(misspelt, expected);
         let ragged = message(&format!("{above}time,travel,force\n0,1,2\n3,4\n"));
         assert_eq!(ragged, "t.csv:7 row: found 2 fields, expected 3 fields, as in the header in line 5");
-        // Nothing is passed over of a file whose first line is the header.
+        // Nothing is skipped if the first line is the header.
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         for (text, lines) in [("travel,force\ntravel,force\n", 0), (&format!("{above}force,travel\n"), 3)] {
@@ -403,7 +403,7 @@ mod tests {
         let table = read("time,travel,time,,force\n0,1,0,,2\n").unwrap();
         assert_eq!(table.number(0, 4).unwrap(), 2.0);
         let twice = message("travel,force,force\n0,1,2\n");
-        assert_eq!(twice, "t.csv:1 header: found force twice, expected every column that is asked for once");
+        assert_eq!(twice, "t.csv:1 header: found force twice, expected every requested column once");
     }
 
     #[test]

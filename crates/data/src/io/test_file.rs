@@ -1,4 +1,4 @@
-//! `test.toml`: what was done to the specimen, with which instruments.
+//! `test.toml`: the test procedure and its instruments.
 
 use super::source::shown;
 use super::toml_file::{TomlFile, written};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Directions and quaternions may be this far from unit length.
+/// Allowed deviation of directions and quaternions from unit length.
 pub(super) const UNIT_LENGTH: f64 = 1e-6;
 
 /// The keys of `test.toml`.
@@ -19,7 +19,7 @@ pub(super) const UNIT_LENGTH: f64 = 1e-6;
 pub(super) struct TestFile {
     pub(super) kind: Kind,
     pub(super) gravity_m_s2: [f64; 3],
-    /// The one direction in which the load cell measures; absent = all three components.
+    /// The only direction measured by the load cell; absent = all three components.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) force_direction: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -30,12 +30,12 @@ pub(super) struct TestFile {
     pub(super) clips: Vec<Clip>,
 }
 
-/// True for the kinds that lie on a table and have no clips.
+/// True for overhang tests, which have a table and no clips.
 pub(super) fn bends(kind: Kind) -> bool {
     kind.holding() == Holding::Table
 }
 
-/// Reads and checks `test.toml` for a mesh of so many vertices.
+/// Reads and checks `test.toml` for a mesh with the given number of vertices.
 pub(super) fn read(path: &Path, vertices: usize) -> Result<TestFile> {
     let file = TomlFile::read(path)?;
     let test: TestFile = file.value()?;
@@ -60,7 +60,7 @@ pub(super) fn read(path: &Path, vertices: usize) -> Result<TestFile> {
     }
     match (test.clips.is_empty(), bends(test.kind)) {
         (false, true) => Err(file.invalid("clips", "[[clips]]", "none for a bending test")),
-        (true, false) => Err(file.invalid("clips", "nothing", "[[clips]], one at least")),
+        (true, false) => Err(file.invalid("clips", "nothing", "at least one [[clips]]")),
         _ => check_clips(&file, &test.clips, vertices),
     }?;
     Ok(test)
@@ -80,7 +80,7 @@ pub(super) fn write(path: &Path, sequence: &Sequence) -> Result<()> {
 }
 
 fn check_vector(file: &TomlFile, key: &str, vector: [f64; 3], unit: bool) -> Result<()> {
-    // Reading an array of three takes no notice of a fourth number.
+    // Deserialising an array of three ignores a fourth number.
     if file.has(&format!("{key}[3]")) {
         return Err(file.invalid(key, "more than three numbers", "an array of length 3"));
     }
@@ -123,7 +123,7 @@ fn check_clips(file: &TomlFile, clips: &[Clip], vertices: usize) -> Result<()> {
             return refuse("name", format!("{} twice", shown(name)), "another name for every clip");
         }
         if !(clip.mass_kg >= 0.0 && clip.mass_kg.is_finite()) {
-            return refuse("mass_kg", clip.mass_kg.to_string(), "a mass, 0 at least");
+            return refuse("mass_kg", clip.mass_kg.to_string(), "a mass of 0 or more");
         }
         if clip.vertices.is_empty() {
             return refuse("vertices", "nothing".into(), "the vertices that the clip holds");

@@ -1,4 +1,4 @@
-//! Sets that come back as they were written; the two children hold sets that must not be read.
+//! Round trips of valid sets; the two child modules hold sets that must not be read.
 
 mod fuzz;
 mod malformed;
@@ -15,7 +15,7 @@ fn mesh() -> Mesh {
     Mesh::new(positions, material, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
 }
 
-/// The rest shape, moved, in numbers that float32 holds; one vertex was not observed.
+/// The rest shape, shifted, in values exact in float32; one vertex is unobserved.
 fn shape(offset: f64) -> Vec<Vector3<f64>> {
     let mut shape: Vec<_> =
         mesh().positions.iter().map(|p| p.map(|value| f64::from((value + offset) as f32))).collect();
@@ -76,7 +76,7 @@ fn bend() -> Sequence {
     }
 }
 
-/// Clips only.
+/// A sequence with clips only.
 fn corners() -> Sequence {
     let mut sequence = Sequence { name: "corners".into(), kind: Kind::CornerPull, ..stretch() };
     for frame in &mut sequence.frames {
@@ -98,7 +98,7 @@ fn set() -> MeasurementSet {
     MeasurementSet { fabric, sequences: vec![bend(), corners(), stretch()] }
 }
 
-/// Debug output tells every bit of a float but those of a NaN, which differs from itself.
+/// Compares debug output, which shows every bit of a float except of NaN, which differs from itself.
 fn same(a: &impl std::fmt::Debug, b: &impl std::fmt::Debug) {
     assert_eq!(format!("{a:?}"), format!("{b:?}"));
 }
@@ -158,7 +158,7 @@ fn what_cannot_be_read_is_not_written() {
     let twice = MeasurementSet { sequences: vec![stretch(), bend()], ..set() };
     assert_eq!(
         write_set(&place, &twice).unwrap_err().to_string(),
-        "sequences[].name: found stretch-weft before bend, expected every name once, in order"
+        "sequences[].name: found stretch-weft before bend, expected unique names in ascending order"
     );
     let other = folder.path().join("home");
     fs::create_dir(&other).unwrap();
@@ -228,7 +228,7 @@ fn obj_quads_and_relative_indices_are_read() {
 fn double_precision_arrays_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("positions.npy");
-    // As numpy.save writes it, in the second version of the format.
+    // Version 2 of the format, as written by numpy.save.
     let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2, 3), }\n";
     let mut bytes = b"\x93NUMPY\x02\x00".to_vec();
     bytes.extend((header.len() as u32).to_le_bytes());

@@ -1,4 +1,4 @@
-//! A TOML file whose errors name the line and the key.
+//! TOML parsing with errors that name line and key.
 
 use super::source::{read_text, shown};
 use super::unit::{conversion, same_quantity};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The text of a TOML file.
+/// Text of a TOML file.
 pub struct TomlFile {
     path: PathBuf,
     text: String,
@@ -20,25 +20,25 @@ impl TomlFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// It is missing, or no text.
+    /// A missing file, or one that is not text.
     pub fn read(path: &Path) -> Result<Self> {
         Ok(Self::of(path, read_text(path)?))
     }
 
-    /// A file whose text is known already.
+    /// Wraps a text that was read already.
     pub fn of(path: &Path, text: String) -> Self {
         Self { path: path.to_path_buf(), text }
     }
 
-    /// The value that the file describes.
+    /// Parses the file into a value.
     ///
     /// # Errors
-    /// No TOML; a key unknown, missing or twice; a value of another type. All with line and key.
+    /// Invalid TOML; an unknown, missing or duplicate key; a value of another type. All with line and key.
     pub fn value<T: DeserializeOwned>(&self) -> Result<T> {
         toml::from_str(&self.text).map_err(|error| self.explain(&error))
     }
 
-    /// Bad input at a key such as `clips[1].mass_kg`.
+    /// Invalid input at a key such as `clips[1].mass_kg`.
     pub fn invalid(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
         let mut line = None;
         self.visit(&mut |name, span| {
@@ -56,7 +56,7 @@ impl TomlFile {
         found
     }
 
-    /// Every key of the file with the bytes of its value, outer ones first.
+    /// Visits every key of the file with the byte range of its value, outer keys first.
     fn visit(&self, visitor: &mut dyn FnMut(&str, Range<usize>)) {
         if let Ok(document) = DeTable::parse(&self.text) {
             visit_table("", document.get_ref(), visitor);
@@ -85,7 +85,7 @@ impl TomlFile {
             return Error::input(&self.path, line, key, "nothing", "a value");
         }
         if let Some(name) = quoted(message, "unknown field ") {
-            // The known keys stand after the key that was found, which may hold anything.
+            // The known keys follow the unknown one, which may contain anything.
             let known = message.rsplit_once(", expected ").map_or("", |(_, known)| known);
             let known: Vec<_> = known.split('`').skip(1).step_by(2).collect();
             let expected = match known.iter().find(|known| same_quantity(name, known)) {
@@ -103,7 +103,7 @@ impl TomlFile {
             value.trim().split_once(',').is_some_and(|(a, b)| a.ends_with(digit) && b.starts_with(digit));
         let expected = match expected {
             _ if found == "duplicate key" => "every key once",
-            // Where no key is known the text itself is no TOML.
+            // Without a key the text is not TOML.
             _ if key.is_empty() && comma => "a number with a decimal point, not a comma",
             "f64" => "a number",
             "usize" => "a whole number from 0",
@@ -114,13 +114,13 @@ impl TomlFile {
     }
 }
 
-/// A value as the text of a TOML file.
+/// TOML text of a value.
 pub(super) fn written<T: Serialize>(path: &Path, value: &T) -> Result<String> {
     toml::to_string(value)
         .map_err(|error| Error::input(path, None, "value", error.to_string(), "one that TOML can hold"))
 }
 
-/// The name between backticks after a prefix.
+/// The text between backticks after a prefix.
 fn quoted<'a>(message: &'a str, prefix: &str) -> Option<&'a str> {
     message.strip_prefix(prefix)?.strip_prefix('`')?.split('`').next()
 }

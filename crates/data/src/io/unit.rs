@@ -1,6 +1,6 @@
-//! Names that carry their unit: `tx_m`, `areal_density_kg_m2`. A value in another unit is named, never converted.
+//! Names with a unit suffix: `tx_m`, `areal_density_kg_m2`. Values in another unit are reported, never converted.
 
-/// Unit suffixes, longest first, and their names.
+/// Unit suffixes, longest first, with their names.
 const UNITS: [(&str, &str); 30] = [
     ("_n_per_m", "newtons per metre"),
     ("_per_m", "per metre"),
@@ -34,8 +34,8 @@ const UNITS: [(&str, &str); 30] = [
     ("_percent", "percent"),
 ];
 
-/// Splits `tx_mm` into the quantity `tx` and the unit "millimetres", `moment [gf·cm/cm]` into `moment` and what stands in
-/// brackets.
+/// Splits `tx_mm` into the quantity `tx` and the unit "millimetres", and `moment [gf·cm/cm]` into `moment` and the
+/// bracketed text.
 fn split(name: &str) -> (&str, Option<&str>) {
     if let Some((quantity, unit)) = in_brackets(name) {
         return (quantity, Some(unit));
@@ -46,26 +46,26 @@ fn split(name: &str) -> (&str, Option<&str>) {
         .unwrap_or((name, None))
 }
 
-/// A quantity and the unit that stands in brackets behind it.
+/// Splits a name into quantity and bracketed unit.
 fn in_brackets(name: &str) -> Option<(&str, &str)> {
     let within = |open: char, close: char| name.strip_suffix(close)?.rsplit_once(open);
     let (quantity, unit) = within('[', ']').or_else(|| within('(', ')'))?;
     Some((quantity.trim(), unit.trim()))
 }
 
-/// True if the names differ in their units only.
+/// True if the names differ only in their units.
 pub(super) fn same_quantity(found: &str, expected: &str) -> bool {
     split(&found.to_lowercase()).0 == split(expected).0
 }
 
-/// What to do about a name in the wrong unit, or without one.
+/// Remedy for a name with another unit, or without one.
 pub(super) fn conversion(found: &str, expected: &str) -> String {
-    // Moments of bending are per width: N·m/m.
+    // Bending moments are per width: N·m/m.
     let per_width = if expected.starts_with("moment") { ", newton metres per metre of width" } else { "" };
     let found = found.to_lowercase();
     match (split(&found).1, split(expected).1) {
         (Some(from), Some(to)) if from != to => format!("convert {from} to {to}{per_width}"),
         (None, Some(to)) => format!("the values in {to}, the unit in the name"),
-        _ => "the name exactly so".into(),
+        _ => "exactly this name".into(),
     }
 }

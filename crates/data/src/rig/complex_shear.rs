@@ -1,4 +1,4 @@
-//! The complex shear test: bars on the left and right sides, moved along each other and let back. It buckles.
+//! Complex shear test: bars on the left and right sides move along each other and back. The sheet buckles.
 
 use super::fabric::KnownFabric;
 use super::schedule::Step;
@@ -7,7 +7,7 @@ use super::test::{GRAVITY, Grip, Support, Test};
 use crate::frame::Kind;
 use nalgebra::{Isometry3, Vector3};
 
-/// The test; its drive is how far one bar is moved along the other, m.
+/// The test. Its drive is the shift of one bar along the other, m.
 pub(super) fn test(fabric: &KnownFabric, steps: Vec<Step>) -> Test {
     let sheet = Sheet::straight([fabric.width_m, fabric.height_m]);
     let clips = vec![Grip::bar("left", &sheet, 0, 0), Grip::bar("right", &sheet, 0, 1)];

@@ -1,5 +1,4 @@
-//! The corner pull test: four small clips; one pair of opposite corners is pulled apart and let back, then
-//! the other.
+//! Corner pull test: four small clips; one pair of opposite corners is pulled apart and released, then the other.
 
 use super::fabric::KnownFabric;
 use super::schedule::Step;
@@ -14,8 +13,8 @@ const SIDE: f64 = 0.01;
 /// Mass of a small clip, kg (Miguel et al. 2012, §3).
 const MASS: f64 = 0.0019;
 
-/// The test; its drive is by how much a pair is pulled apart, m: above 0 the corners below left and above
-/// right, below 0 the two others.
+/// The test. Its drive is the distance by which a pair is pulled apart, m: positive for the corners below left and
+/// above right, negative for the other two.
 pub(super) fn test(fabric: &KnownFabric, steps: Vec<Step>) -> Test {
     let size = Vector2::new(fabric.width_m, fabric.height_m);
     let names = ["below-left", "above-right", "below-right", "above-left"];

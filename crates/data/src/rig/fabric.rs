@@ -1,4 +1,4 @@
-//! A fabric whose curves are known: what the rig measures.
+//! Fabrics with known curves, the input of the rig.
 
 use crate::error::{Error, Result};
 use crate::io::TomlFile;
@@ -21,31 +21,30 @@ pub struct KnownFabric {
     pub height_m: f64,
     /// Mass per area, kg/m².
     pub areal_density_kg_m2: f64,
-    /// The model whose strains the curves are over; springs have no bending curve that could be told in
-    /// curvatures.
+    /// Model of the strains; springs are excluded, because their bending curve cannot be stated in curvatures.
     pub model: Model,
-    /// Where its figures come from.
+    /// Origin of the values.
     #[serde(default)]
     pub notes: Option<String>,
-    /// How far each stretch test pulls.
+    /// Largest extension of each stretch test.
     pub largest_extension: LargestExtension,
-    /// By how much the picture frame shears, rad.
+    /// Largest shear angle of the picture frame, rad.
     pub largest_shear_rad: f64,
     /// First and last overhang on the table, m.
     pub overhang_m: [f64; 2],
-    /// By how much opposite edges are moved along each other in the complex shear test, m.
+    /// Shift of opposite edges along each other in the complex shear test, m.
     pub complex_shear_m: f64,
-    /// By how much opposite corners are pulled apart, m.
+    /// Distance by which opposite corners are pulled apart, m.
     pub corner_pull_m: f64,
-    /// Forces under loading over those under unloading, at the same place.
+    /// Ratio of loading to unloading force at the same position.
     pub loading_ratio: f64,
-    /// Standard deviation of the logarithm of a curve from one sample of the fabric to another.
+    /// Standard deviation of the logarithm of the curve factor between samples of the fabric.
     pub sample_scatter: f64,
-    /// Control points of its curves.
+    /// Control points of the curves.
     pub curves: KnownCurves,
 }
 
-/// How far the stretch tests pull, as shares of the length.
+/// Largest extensions of the stretch tests, relative to the length.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LargestExtension {
@@ -69,7 +68,7 @@ pub struct KnownCurves {
     pub bend_weft: BendingPoints,
     /// Bending along warp.
     pub bend_warp: BendingPoints,
-    /// Bending along neither.
+    /// Bending along the diagonals.
     pub bend_diagonal: BendingPoints,
 }
 
@@ -94,7 +93,7 @@ pub struct BendingPoints {
 }
 
 impl KnownCurves {
-    /// The membrane's three.
+    /// The three membrane curves.
     pub fn membrane(&self) -> [(Component, &MembranePoints); 3] {
         [
             (Component::StretchWeft, &self.stretch_weft),
@@ -103,7 +102,7 @@ impl KnownCurves {
         ]
     }
 
-    /// The three of bending.
+    /// The three bending curves.
     pub fn bending(&self) -> [(Component, &BendingPoints); 3] {
         [
             (Component::BendWeft, &self.bend_weft),
@@ -112,7 +111,7 @@ impl KnownCurves {
         ]
     }
 
-    /// The control values of each curve, in its own unit.
+    /// Control values of each curve, in its own unit.
     pub(super) fn values_mut(&mut self) -> [(Component, &mut Vec<f64>); 6] {
         [
             (Component::StretchWeft, &mut self.stretch_weft.stiffness_n_per_m),
@@ -126,33 +125,33 @@ impl KnownCurves {
 }
 
 impl KnownFabric {
-    /// Reads a fabric's file.
+    /// Reads a fabric file.
     ///
     /// # Errors
-    /// As [`KnownFabric::parse`]; a file that cannot be read.
+    /// As [`KnownFabric::parse`]; an unreadable file.
     pub fn read(path: &Path) -> Result<Self> {
         Self::of(&TomlFile::read(path)?)
     }
 
-    /// Reads a fabric from the text of its file.
+    /// Parses the text of a fabric file.
     ///
     /// # Errors
-    /// Text that is no such file, or a figure that no fabric or test can have, with its place.
+    /// A text that is not a fabric file, or a value that no fabric or test can have, with its line.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
         Self::of(&TomlFile::of(path, text.to_string()))
     }
 
-    /// The fabric that a file describes.
+    /// The fabric described by a file.
     pub fn of(file: &TomlFile) -> Result<Self> {
         let fabric: Self = file.value()?;
         fabric.check(file)?;
         Ok(fabric)
     }
 
-    /// The curves over the model's own strains, checked.
+    /// The curves over the strain of the model's elements, checked.
     ///
     /// # Errors
-    /// Control points that make no curve.
+    /// Control points that do not form a curve.
     pub fn curves(&self) -> Result<Curves> {
         let membrane = self
             .curves

@@ -1,4 +1,4 @@
-//! The instruments: what they add to the truth.
+//! Instruments: noise and friction added to the exact values.
 
 use super::protocol::Rig;
 use crate::frame::{MeasurementSet, Noise, Phase};
@@ -12,37 +12,36 @@ const POSITION_NOISE: f64 = 7.5e-5;
 /// Standard deviation of each component of a clip's force, N (Miguel et al. 2012, §3).
 const FORCE_NOISE: f64 = 3.0e-3;
 
-/// Friction of the cords, N: half the width of the hysteresis of about 0.1 N that it makes (Miguel et al.
-/// 2012, §3).
+/// Friction of the cords, N: half the width of the resulting hysteresis of about 0.1 N (Miguel et al. 2012, §3).
 const CORD_FRICTION: f64 = 0.05;
 
 /// The instruments of one sequence.
 pub(super) struct Instruments<'a> {
     rig: &'a Rig,
-    /// The fabric's forces under loading over those under unloading; 1 for a fabric without hysteresis.
+    /// Ratio of loading to unloading force of the fabric; 1 for a fabric without hysteresis.
     loading_ratio: f64,
     random: StdRng,
 }
 
 impl<'a> Instruments<'a> {
-    /// Instruments with a random stream of their own.
+    /// Instruments with their own random stream.
     pub(super) fn new(rig: &'a Rig, loading_ratio: f64, sequence: &str) -> Self {
         let loading_ratio = if rig.fabric_hysteresis { loading_ratio } else { 1.0 };
         Self { rig, loading_ratio, random: stream(rig.seed, sequence) }
     }
 
-    /// Their standard deviations, if they have any.
+    /// The standard deviations; `None` without noise.
     pub(super) fn noise(&self) -> Option<Noise> {
         let noise = Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE) };
         self.rig.noise.then_some(noise)
     }
 
-    /// A vertex as it is seen.
+    /// Measured position of a vertex.
     pub(super) fn position(&mut self, exact: Vector3<f64>) -> Vector3<f64> {
         self.noisy(exact, POSITION_NOISE)
     }
 
-    /// A cord's force as it is measured.
+    /// Measured force of a cord.
     ///
     /// ```text
     /// fabric   hold × 2r/(1 + r) on loading, × 2/(1 + r) on unloading: the mean is the curve, the ratio r
@@ -50,8 +49,8 @@ impl<'a> Instruments<'a> {
     /// cord     ± 0.05 N along the force: friction
     /// ```
     ///
-    /// * `hold` — force that holds the clip against the cloth, N
-    /// * `weight` — of the clip, N
+    /// * `hold` — force that holds the clip in equilibrium with the cloth, N
+    /// * `weight` — weight of the clip, N
     pub(super) fn cord(&mut self, hold: Vector3<f64>, weight: Vector3<f64>, phase: Phase) -> Vector3<f64> {
         let ratio = self.loading_ratio;
         let (share, sign) = match phase {
@@ -66,10 +65,10 @@ impl<'a> Instruments<'a> {
         self.noisy(force, FORCE_NOISE)
     }
 
-    /// The clips' poses as they are seen: a clip through many vertices, but let us say through one at each of
-    /// its ends. Bars that are hinged together are seen as one frame, whose corners must meet.
+    /// Measured poses of the clips. A clip is tracked by many vertices in reality; here by one at each of its ends.
+    /// Bars hinged together are measured as one frame with common corners.
     ///
-    /// * `length` — of the clips, m
+    /// * `length` — length of the clips, m
     pub(super) fn poses(
         &mut self,
         exact: Vec<Isometry3<f64>>,
@@ -102,11 +101,11 @@ impl<'a> Instruments<'a> {
     }
 }
 
-/// A set with the instruments' noise, or a multiple of it, added to shapes and forces, and told to whoever fits it.
+/// Adds the noise of the instruments, or a multiple of it, to shapes and forces, and declares it in the set.
 ///
-/// * `exact` — without noise, with one cord a clip
-/// * `drawn` — multiple of the instruments' noise that is added
-/// * `told` — multiple of it that the set says it has
+/// * `exact` — without noise, with one cord per clip
+/// * `drawn` — multiple of the instrument noise to add
+/// * `told` — multiple of it to declare
 pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> MeasurementSet {
     let mut set = exact.clone();
     for sequence in &mut set.sequences {
@@ -127,7 +126,7 @@ pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> M
     set
 }
 
-/// A random stream of its own for every seed and name: leaving one out changes no other.
+/// A separate random stream per seed and name: omitting one sequence does not change the others.
 pub(super) fn stream(seed: u64, name: &str) -> StdRng {
     let mut key = [0; 32];
     key[..8].copy_from_slice(&seed.to_le_bytes());

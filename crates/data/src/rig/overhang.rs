@@ -1,4 +1,4 @@
-//! The bending test: a sheet pushed off a table's edge, bending under its own weight.
+//! Bending test: a sheet pushed off a table edge bends under its own weight.
 //!
 //! ```text
 //!  z │ ━━━━━━━━━━━━━┓╲
@@ -14,13 +14,12 @@ use crate::frame::{Kind, Table};
 use nalgebra::{Isometry3, Rotation2, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// The test; its drive is the overhang, m. At rest the whole sheet lies on the table, up to the edge.
+/// The test. Its drive is the overhang, m. At rest the whole sheet lies on the table, up to the edge.
 ///
-/// A hinge stands for half a cell on both its sides: where the sheet is to bend from the edge on, the first
-/// row that bends lies half a cell beyond it. So overhangs are rounded to the middle between two rows of the
-/// simulation.
+/// A hinge represents half a cell on both its sides. For bending to start at the edge, the first row that bends must
+/// lie half a cell beyond it. Overhangs are therefore rounded to the middle between two rows of the simulation.
 ///
-/// * `nodes` — of the simulation
+/// * `nodes` — nodes of the simulation
 pub(super) fn test(fabric: &KnownFabric, kind: Kind, nodes: [usize; 2], steps: Vec<Step>) -> Test {
     let sheet = sheet(fabric, kind);
     let axis = usize::from(kind == Kind::BendWarp);
@@ -46,7 +45,7 @@ pub(super) fn test(fabric: &KnownFabric, kind: Kind, nodes: [usize; 2], steps: V
     }
 }
 
-/// A sheet whose weft, warp or bias runs outward, along x.
+/// A sheet with weft, warp or bias along the outward direction x.
 fn sheet(fabric: &KnownFabric, kind: Kind) -> Sheet {
     let size = [fabric.width_m, fabric.height_m];
     let quarter = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -FRAC_PI_2);

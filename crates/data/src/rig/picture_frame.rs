@@ -1,4 +1,4 @@
-//! The shear test: a frame of four bars, hinged at the corners, sheared and let back.
+//! Shear test: a frame of four bars, hinged at the corners, is sheared and returned.
 //!
 //! ```text
 //!      ┌───────┐            ┌───────┐       w_u = (cos γ/2, sin γ/2)
@@ -13,7 +13,7 @@ use super::test::{GRAVITY, Grip, Support, Test};
 use crate::frame::Kind;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-/// The test; its drive is the shear angle γ, rad.
+/// The test. Its drive is the shear angle γ, rad.
 pub(super) fn test(fabric: &KnownFabric, steps: Vec<Step>) -> Test {
     let size = [fabric.width_m, fabric.height_m];
     let sheet = Sheet::straight(size);
@@ -29,12 +29,12 @@ pub(super) fn test(fabric: &KnownFabric, steps: Vec<Step>) -> Test {
     }
 }
 
-/// Of the bars left, right, below, above, about the frame's centre.
+/// Motions of the bars left, right, below, above, about the centre of the frame.
 fn motions([width, height]: [f64; 2], angle: f64) -> [Isometry3<f64>; 4] {
     let turn = |angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
     let [along_weft, along_warp] = [turn(0.5 * angle), turn(-0.5 * angle)];
     let centre = Vector3::new(0.5 * width, 0.5 * height, 0.0);
-    // A bar's middle is moved by the other pair of bars.
+    // The other pair of bars moves the centre of a bar.
     let bar = |rotation: UnitQuaternion<f64>, arm: Vector3<f64>, other: UnitQuaternion<f64>| {
         let shift = centre + other * arm - rotation * (centre + arm);
         Isometry3::from_parts(Translation3::from(shift), rotation)
@@ -56,7 +56,7 @@ mod tests {
     use cloth_sim::material::Component;
     use cloth_sim::mesh::Diagonals;
 
-    /// Flat and without weight the shear is homogeneous: every bar takes stress × its length, along itself.
+    /// In the plane and without weight the shear is homogeneous: every bar carries stress × length along itself.
     #[test]
     fn every_bar_takes_the_stress_along_itself() {
         let text = include_str!("../../../../fixtures/fabrics/cotton-denim.toml");

@@ -1,9 +1,9 @@
-//! What the rig measures of a fabric, how finely, and with which errors.
+//! Settings of the rig: tests, resolution and errors.
 
 use crate::frame::Kind;
 use cloth_sim::mesh::Diagonals;
 
-/// The tests that the rig can make, in the order of their names.
+/// Tests that the rig can simulate, ordered by name.
 pub const KINDS: [Kind; 8] = [
     Kind::BendBias,
     Kind::BendWarp,
@@ -15,33 +15,33 @@ pub const KINDS: [Kind; 8] = [
     Kind::StretchWeft,
 ];
 
-/// What is measured, and how.
+/// Settings of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
-    /// The tests to make; default all of [`KINDS`].
+    /// Tests to simulate. Default: all of [`KINDS`].
     pub sequences: Vec<Kind>,
-    /// Columns and rows of the simulation; default 61×61.
+    /// Columns and rows of the simulation. Default: 61×61.
     pub nodes: [usize; 2],
-    /// How the simulation's cells are split; default alternating, as in a fit, but finer. Split all one way, hinges are up
-    /// to three times as stiff along one diagonal as along the other, and no sheet is.
+    /// Diagonals of the simulation grid. Default: alternating, as in a fit but finer. With all diagonals in one
+    /// direction, hinges are up to three times as stiff along one diagonal as along the other, unlike any sheet.
     pub diagonals: Diagonals,
-    /// Columns and rows of the measured mesh; default 100×100.
+    /// Columns and rows of the measured mesh. Default: 100×100.
     pub measured: [usize; 2],
-    /// Frames of one loading, and as many of its unloading; default 12.
+    /// Frames per loading; an unloading has the same number. Default: 12.
     pub frames: usize,
-    /// Loadings, but in bending, where the sheet is pushed out once; default 1.
+    /// Number of load cycles. Default: 1. Does not apply to bending, where the sheet is pushed out once.
     pub cycles: usize,
-    /// Noise of the instruments; default on.
+    /// Instrument noise. Default: on.
     pub noise: bool,
-    /// Noise of the clips' poses too, as of a single vertex; default off.
+    /// Noise of the clip poses too, equal to that of a single vertex. Default: off.
     pub clip_noise: bool,
-    /// Friction of the cords: clip forces 0.05 N larger on loading and smaller on unloading; default off.
+    /// Friction of the cords: clip forces 0.05 N larger on loading and smaller on unloading. Default: off.
     pub cord_hysteresis: bool,
-    /// The fabric's own hysteresis, by its `loading_ratio`; default off.
+    /// Hysteresis of the fabric, from its `loading_ratio`. Default: off.
     pub fabric_hysteresis: bool,
-    /// Which sample of the fabric; the first, the default, is the fabric itself. See [`super::KnownFabric::sample`].
+    /// Number of the fabric sample. Default: 1, the fabric itself. See [`super::KnownFabric::sample`].
     pub sample: usize,
-    /// Seed of all noise; default 1.
+    /// Seed of all noise. Default: 1.
     pub seed: u64,
 }
 

@@ -1,14 +1,14 @@
-//! Other samples of a fabric: cut from the same roll, and yet not the same.
+//! Further samples of a fabric, with scattered stiffness.
 
 use super::fabric::KnownFabric;
 use super::noise::stream;
 use rand_distr::{Distribution, StandardNormal};
 
 impl KnownFabric {
-    /// A sample of the fabric: the first is the fabric itself; in the others every curve is stiffer or softer
-    /// as a whole, by a factor exp(N(0, `sample_scatter`)) that depends on the number only.
+    /// A sample of the fabric. The first is the fabric itself; in the others every curve is multiplied by a factor
+    /// exp(N(0, `sample_scatter`)) that depends only on the sample number.
     ///
-    /// Source: second samples, Miguel et al. 2012, §6; the law is ours.
+    /// Source: second samples, Miguel et al. 2012, §6; the distribution is our own.
     #[must_use]
     pub fn sample(&self, number: usize) -> Self {
         let mut sample = self.clone();

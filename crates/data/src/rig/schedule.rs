@@ -1,20 +1,20 @@
-//! In which order a test goes where: its steps, one a frame.
+//! Load schedule of a test: a list of steps, one per frame.
 
 use crate::frame::Phase;
 
-/// One frame to come.
+/// A planned frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Step {
-    /// How far the test is driven; 0 is at rest. What it measures is the test's own affair.
+    /// Drive of the test; 0 is the rest state. Each test defines its quantity.
     pub(super) drive: f64,
-    /// Which load cycle.
+    /// Load cycle.
     pub(super) cycle: usize,
     /// Loading or unloading.
     pub(super) phase: Phase,
 }
 
-/// From rest to each of the ends in turn and back, in as many steps out as back, as often as there are
-/// cycles. The first step is at rest.
+/// From rest to each end in turn and back, repeated for each cycle; loading and unloading have the same number of
+/// steps. The first step is at rest.
 pub(super) fn there_and_back(ends: &[f64], frames: usize, cycles: usize) -> Vec<Step> {
     let mut steps = vec![Step { drive: 0.0, cycle: 0, phase: Phase::Hold }];
     for cycle in 0..cycles {
@@ -27,7 +27,7 @@ pub(super) fn there_and_back(ends: &[f64], frames: usize, cycles: usize) -> Vec<
     steps
 }
 
-/// From one drive to another, both included, in equal steps.
+/// Equal steps from one drive to another, both included.
 pub(super) fn outward([first, last]: [f64; 2], frames: usize) -> Vec<Step> {
     let share = |step: usize| if frames == 1 { 1.0 } else { step as f64 / (frames - 1) as f64 };
     (0..frames)

@@ -1,17 +1,17 @@
-//! The sheet that is measured: a rectangle with its yarns, somewhere in space, and regular grids over it.
+//! The measured sheet: a rectangle with yarn directions and a position in space, and regular grids on it.
 
 use crate::error::{Error, Result};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Rotation2, Vector2, Vector3};
 
-/// A rectangle of cloth at rest. Its own coordinates run from 0 along its sides.
+/// A rectangle of cloth at rest. Its local coordinates start at 0 along both sides.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sheet {
     /// Extents, m.
     pub(super) size: [f64; 2],
-    /// Turns the sheet's coordinates into material ones: by 45° on a sheet cut on the bias.
+    /// Rotates sheet coordinates into material coordinates: by 45° for a sheet cut on the bias.
     pub(super) yarns: Rotation2<f64>,
-    /// Turns the sheet's coordinates into world ones.
+    /// Maps sheet coordinates to world coordinates.
     pub(super) place: Isometry3<f64>,
 }
 
@@ -37,12 +37,12 @@ impl Sheet {
         Ok(Mesh { grid: Some(grid), ..checked })
     }
 
-    /// World coordinates of a point given in the sheet's own.
+    /// World coordinates of a point in sheet coordinates.
     pub(super) fn at(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.place.rotation * point + self.place.translation.vector
     }
 
-    /// The sheet's own coordinates of a point at rest, for its material coordinates.
+    /// Sheet coordinates of a rest point given in material coordinates.
     pub(super) fn own(&self, material: &Vector2<f64>) -> Vector2<f64> {
         self.yarns.inverse() * material
     }

@@ -1,4 +1,4 @@
-//! The stretch test: two bars on opposite sides, pulled apart and let back. In the plane, without weight.
+//! Stretch test: two bars on opposite sides are pulled apart and returned. In the plane, without weight.
 
 use super::fabric::KnownFabric;
 use super::schedule::Step;
@@ -7,7 +7,7 @@ use super::test::{Grip, Support, Test};
 use crate::frame::Kind;
 use nalgebra::{Isometry3, Vector3};
 
-/// The largest drive: by how much the bars are apart, m.
+/// Largest drive: the increase of the bar distance, m.
 pub(super) fn largest(fabric: &KnownFabric, kind: Kind) -> f64 {
     match kind {
         Kind::StretchWeft => fabric.largest_extension.stretch_weft * fabric.width_m,

@@ -1,4 +1,4 @@
-//! A test as the rig carries it out: a sheet, what holds it, and how that moves.
+//! A test of the rig: a sheet, its support, and the motion of the support.
 
 use super::schedule::Step;
 use super::sheet::Sheet;
@@ -6,37 +6,37 @@ use crate::frame::{Kind, Table};
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Isometry3, Vector2, Vector3};
 
-/// Gravity where a test has weight, m/s².
+/// Gravity of tests with weight, m/s².
 pub(super) const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
 
-/// Distances below this are none, m.
+/// Distances below this count as zero, m.
 const CLOSE: f64 = 1e-9;
 
 /// A test.
 pub(super) struct Test {
-    /// Which.
+    /// Kind of the test.
     pub(super) kind: Kind,
     /// The sheet at rest.
     pub(super) sheet: Sheet,
-    /// What holds it.
+    /// Support of the sheet.
     pub(super) support: Support,
     /// Gravity, m/s². Without it the sheet stays in its plane.
     pub(super) gravity: Vector3<f64>,
-    /// The motion of every clip, or of the sheet on the table, at a drive; none at drive 0.
+    /// Motion of every clip, or of the sheet on the table, as a function of the drive; identity at drive 0.
     pub(super) motion: Box<dyn Fn(f64) -> Vec<Isometry3<f64>> + Send + Sync>,
     /// The frames to measure.
     pub(super) steps: Vec<Step>,
 }
 
-/// What holds a sheet.
+/// Support of a sheet.
 pub(super) enum Support {
     /// Clips.
     Clips(Vec<Grip>),
-    /// A table, over whose edge the sheet is pushed.
+    /// A table, with the sheet pushed over its edge.
     Table {
-        /// Where it ends.
+        /// Position of the table.
         table: Table,
-        /// What is no further beyond the edge is held too, m.
+        /// Width of the strip beyond the edge that is held too, m.
         reach: f64,
     },
 }
@@ -48,17 +48,17 @@ pub(super) struct Grip {
     pub(super) name: &'static str,
     /// Its mass, kg.
     pub(super) mass_kg: f64,
-    /// Lowest corner, in the sheet's coordinates, m.
+    /// Lowest corner, in sheet coordinates, m.
     pub(super) low: Vector2<f64>,
-    /// Highest corner.
+    /// Highest corner, in sheet coordinates, m.
     pub(super) high: Vector2<f64>,
 }
 
 impl Grip {
     /// A long bar on a whole side of a sheet, 13.3 g (Miguel et al. 2012, §3).
     ///
-    /// * `axis` — 0: a side where x is constant, 1: one where y is
-    /// * `end` — 0 or 1: the side at 0, or the one opposite
+    /// * `axis` — 0: a side of constant x, 1: a side of constant y
+    /// * `end` — 0: the side at 0, 1: the opposite one
     pub(super) fn bar(name: &'static str, sheet: &Sheet, axis: usize, end: usize) -> Self {
         let mut low = Vector2::zeros();
         let mut high = Vector2::from(sheet.size);
@@ -70,13 +70,13 @@ impl Grip {
         Self { name, mass_kg: 0.0133, low, high }
     }
 
-    /// A point of the sheet lies in the clip.
+    /// True if a point of the sheet lies in the clip.
     pub(super) fn holds(&self, point: &Vector2<f64>) -> bool {
         let slack = Vector2::repeat(CLOSE);
         *point >= self.low - slack && *point <= self.high + slack
     }
 
-    /// Unit vector of the clip's longer side, in the sheet's coordinates.
+    /// Unit vector along the longer side of the clip, in sheet coordinates.
     fn axis(&self) -> Vector3<f64> {
         let extent = self.high - self.low;
         if extent.x > extent.y { Vector3::x() } else { Vector3::y() }
@@ -84,7 +84,7 @@ impl Grip {
 }
 
 impl Test {
-    /// The clips; none on a table.
+    /// The clips; empty for a table.
     pub(super) fn grips(&self) -> &[Grip] {
         match &self.support {
             Support::Clips(grips) => grips,
@@ -97,13 +97,12 @@ impl Test {
         self.gravity == Vector3::zeros()
     }
 
-    /// The vertices of a mesh of the sheet that a clip grips.
+    /// Vertices of a mesh of the sheet held by a clip.
     pub(super) fn gripped(&self, mesh: &Mesh, grip: &Grip) -> Vec<usize> {
         (0..mesh.len()).filter(|&vertex| grip.holds(&self.sheet.own(&mesh.material[vertex]))).collect()
     }
 
-    /// For every vertex the motions that hold it at a drive: none, one, or two where bars are hinged
-    /// together.
+    /// Motions that hold each vertex: none, one, or two where bars are hinged together.
     pub(super) fn holders(&self, mesh: &Mesh, motions: &[Isometry3<f64>]) -> Vec<Vec<usize>> {
         let vertices = 0..mesh.len();
         match &self.support {
@@ -121,7 +120,7 @@ impl Test {
         }
     }
 
-    /// Long axis of every clip at these motions, in world coordinates.
+    /// Long axis of every clip under these motions, in world coordinates.
     pub(super) fn axes(&self, motions: &[Isometry3<f64>]) -> Vec<Vector3<f64>> {
         let axis = |(grip, motion): (&Grip, &Isometry3<f64>)| {
             motion.rotation * (self.sheet.place.rotation * grip.axis())
@@ -130,7 +129,7 @@ impl Test {
     }
 }
 
-/// Where a motion takes a point.
+/// Position of a point under a motion.
 pub(super) fn moved(motion: &Isometry3<f64>, point: &Vector3<f64>) -> Vector3<f64> {
     motion.rotation * point + motion.translation.vector
 }

@@ -1,7 +1,7 @@
-//! The truth: what the simulated sheet does in every frame of a test.
+//! Simulates the sheet in every frame of a test.
 //!
-//! By continuation: each frame starts from the equilibrium before it, moved along with what holds the sheet.
-//! So a sheet that has buckled to one side stays there, as in the laboratory.
+//! Uses continuation: each frame starts from the previous equilibrium, moved with the support. A sheet that has buckled
+//! to one side therefore stays there, as in the laboratory.
 
 use super::fabric::KnownFabric;
 use super::test::{Support, Test, moved};
@@ -14,21 +14,20 @@ use cloth_sim::material::{Component, Curves};
 use cloth_sim::mesh::{Grid, Mesh};
 use nalgebra::{Isometry3, Vector3};
 
-/// A step that finds no equilibrium is halved at most so often.
+/// Maximum number of halvings of a step without equilibrium.
 const HALVINGS: u32 = 5;
 
-/// A frame.
+/// State of a frame.
 pub(super) struct State {
     /// Motion of every clip, or of the sheet on the table.
     pub(super) motions: Vec<Isometry3<f64>>,
     /// Position of every vertex, m.
     pub(super) positions: Vec<Vector3<f64>>,
-    /// Force that holds each clip, apart from its own weight, N; none where the sheet is at rest and without
-    /// weight.
+    /// Force that holds each clip, excluding its own weight, N; empty for a sheet at rest without weight.
     pub(super) holds: Vec<Vector3<f64>>,
 }
 
-/// What came of a solve: the forces that hold the clips, or how it failed.
+/// Result of a solve: the forces that hold the clips, or the failure status.
 type Attempt = std::result::Result<Vec<Vector3<f64>>, Status>;
 
 /// A sheet under test.
@@ -39,9 +38,9 @@ pub(super) struct Truth<'a> {
     fabric: &'a KnownFabric,
     curves: &'a Curves,
     drive: f64,
-    /// 3 stacked coordinates a vertex, m.
+    /// 3 stacked coordinates per vertex, m.
     x: Vec<f64>,
-    /// The cloth as it was last held, and by what each vertex.
+    /// The cloth under its latest constraints, and the motions that hold each vertex.
     held: Option<(Vec<Vec<usize>>, Cloth)>,
 }
 
@@ -57,10 +56,10 @@ impl<'a> Truth<'a> {
         Self { test, mesh, grid, fabric, curves, drive: 0.0, x: stacked(&mesh.positions), held: None }
     }
 
-    /// All frames of the test.
+    /// Computes all frames of the test.
     ///
     /// # Errors
-    /// A frame without a stable equilibrium; what the mechanics refuse.
+    /// A frame without a stable equilibrium; a problem rejected by the simulation.
     pub(super) fn frames(mut self) -> Result<Vec<State>> {
         let steps = &self.test.steps;
         steps.iter().enumerate().map(|(frame, step)| self.frame(frame, step.drive)).collect()
@@ -68,7 +67,7 @@ impl<'a> Truth<'a> {
 
     fn frame(&mut self, frame: usize, drive: f64) -> Result<State> {
         let holds = if drive == 0.0 && self.test.is_planar() {
-            // Without weight there is nothing to find; and without bending nothing to find it with.
+            // Without weight the rest state needs no solve, and without bending a solve could not find it.
             (self.drive, self.x) = (drive, stacked(&self.mesh.positions));
             Ok(Vec::new())
         } else {
@@ -85,7 +84,7 @@ impl<'a> Truth<'a> {
         })
     }
 
-    /// Drives the test, in halves where it cannot be done at once.
+    /// Advances the drive, in halves where a single step fails.
     fn advance(&mut self, drive: f64, halvings: u32) -> Result<Attempt> {
         let from = self.drive;
         let at_once = self.solve(drive)?;
@@ -98,7 +97,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Drives the test at once. Without success nothing has moved.
+    /// Advances the drive in one step. On failure the state is unchanged.
     fn solve(&mut self, drive: f64) -> Result<Attempt> {
         let motions = (self.test.motion)(drive);
         let holders = self.test.holders(self.mesh, &motions);
@@ -118,7 +117,7 @@ impl<'a> Truth<'a> {
         Ok(Ok(holds))
     }
 
-    /// The last state, taken along by what holds the sheet's four corners, and what is held in its place.
+    /// Start of a solve: the previous state moved with the four corners of the sheet, and held vertices in place.
     fn start(&self, motions: &[Isometry3<f64>], holders: &[Vec<usize>]) -> Vec<f64> {
         let before = (self.test.motion)(self.drive);
         let corners = self.corners(holders);
@@ -143,8 +142,7 @@ impl<'a> Truth<'a> {
         x
     }
 
-    /// The four corners of the sheet, and which motion each follows: what holds it, else what holds any
-    /// vertex.
+    /// The four corners of the sheet, and the motion that each follows: its own holder, else that of any vertex.
     fn corners(&self, holders: &[Vec<usize>]) -> [(usize, usize); 4] {
         let [right, above] = [self.grid.columns - 1, self.grid.rows - 1];
         [[0, 0], [right, 0], [0, above], [right, above]]
@@ -172,8 +170,8 @@ impl<'a> Truth<'a> {
         .map_err(|source| Error::Mechanics { context: format!("rig, {}", self.test.kind), source })
     }
 
-    /// Off a table, the free lines along its edge, each of which moves as a whole: the sheet bends as a cylinder. Hinges
-    /// would let it twist with its diagonals, which no cloth does.
+    /// On a table: the free lines along the edge, each moved as a rigid line, so that the sheet bends as a cylinder.
+    /// Otherwise hinges would let it twist with the diagonals, which cloth does not do.
     fn lines(&self, holders: &[Vec<usize>]) -> Vec<Vec<usize>> {
         let Grid { columns, rows, .. } = *self.grid;
         let line = |along_rows: bool, index: usize| -> Vec<usize> {
@@ -191,7 +189,7 @@ impl<'a> Truth<'a> {
         lines.into_iter().filter(free).collect()
     }
 
-    /// Sums over each clip's vertices the forces that hold them.
+    /// Sums the holding forces over the vertices of each clip.
     fn holds(
         &self,
         motions: &[Isometry3<f64>],
@@ -219,9 +217,9 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// Splits the force at a corner between the two bars that are hinged there: within their plane each takes
-/// what lies along it, across the plane each takes half. In homogeneous shear the traction on each side is
-/// along its bar, so that every bar gets stress × length exactly.
+/// Splits the force at a corner between the two bars hinged there: in their plane each takes the component along
+/// itself, out of the plane each takes half. In homogeneous shear the traction on each side is along its bar, so that
+/// every bar gets exactly stress × length.
 fn split(force: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
     let normal = a.cross(&b);
     let area = normal.norm_squared();

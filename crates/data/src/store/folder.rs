@@ -1,10 +1,10 @@
-//! Where a file or a folder stands, followed through links, and whether its names are on disk.
+//! Resolves links of paths, and flushes folder entries to disk.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// Where the path leads, links followed; `None` if nothing is there.
+/// Target of a path, links followed; `None` if nothing exists there.
 pub(super) fn existing_target(path: &Path) -> Result<Option<PathBuf>> {
     match fs::canonicalize(path) {
         Ok(target) => Ok(Some(target)),
@@ -17,7 +17,7 @@ pub(super) fn existing_target(path: &Path) -> Result<Option<PathBuf>> {
     }
 }
 
-/// The folder that a path stands in.
+/// Parent folder of a path.
 pub(super) fn parent(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
@@ -25,7 +25,7 @@ pub(super) fn parent(path: &Path) -> PathBuf {
     }
 }
 
-/// Makes names in a folder survive a power cut. Only Unix can open a folder for that.
+/// Flushes the entries of a folder, so that they survive a power cut. Only Unix can open a folder for that.
 pub(super) fn sync_folder(folder: &Path) -> std::io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }

@@ -1,11 +1,11 @@
-//! What a run has finished, record by record, so that a later one can go on from there.
+//! Journal of finished work, record by record, from which a later run can resume.
 //!
 //! ```text
 //! record   length of the content, u64, little endian · SHA-256 of the content · content, MessagePack
 //! journal  the key's digest · records
 //! ```
 //!
-//! Numbers come back to the bit. A record that was not written to its end, and what follows it, do not count.
+//! Numbers are stored exactly. An incomplete record and everything after it are ignored.
 
 use super::work;
 use crate::error::{Error, Result};
@@ -16,12 +16,12 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// What a former run has finished.
+/// Finished work of an earlier run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Recalled<T> {
     /// Its records, in the order in which they were kept.
     pub records: Vec<T>,
-    /// A run of something else had been kept here, and is forgotten now.
+    /// True if a journal with another key was here and has been discarded.
     pub forgotten: bool,
 }
 
@@ -37,10 +37,10 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Opens a journal, or begins one: a new one too where the old one's key is another.
+    /// Opens a journal, or starts a new one if there is none or its key differs.
     ///
     /// # Errors
-    /// Something else than a journal stands there; the operating system refuses.
+    /// Something other than a journal at the path; a failed system call.
     pub(super) fn open<T: DeserializeOwned>(
         path: &Path,
         key: &impl Serialize,
@@ -71,15 +71,15 @@ impl Journal {
         Ok((journal, recalled))
     }
 
-    /// Records beside the key.
+    /// Number of records, without the key.
     pub(super) fn len(&self) -> usize {
         self.records
     }
 
-    /// Adds a record, and returns when the disk holds it.
+    /// Appends a record and returns after it is on disk.
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// A failed system call.
     pub(super) fn append(&mut self, record: &impl Serialize) -> Result<()> {
         let content = self.encoded(record)?;
         self.write(&content)?;
@@ -88,7 +88,7 @@ impl Journal {
     }
 
     fn encoded(&self, record: &impl Serialize) -> Result<Vec<u8>> {
-        // By name, since some types leave fields out.
+        // With field names, since some types omit fields.
         rmp_serde::to_vec_named(record).map_err(|error| Error::io(&self.path, std::io::Error::other(error)))
     }
 
@@ -101,7 +101,7 @@ impl Journal {
     }
 }
 
-/// Takes the next whole record off the front.
+/// Takes the next complete record from the front.
 fn next<'a>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (header, rest) = bytes.split_at_checked(HEADER)?;
     let (length, checksum) = header.split_at(8);
@@ -135,7 +135,7 @@ mod tests {
             let (mut journal, recalled) = open();
             let expected = ends[1..].iter().filter(|end| **end <= cut).count();
             assert_eq!(recalled.records, ["first", "second"][..expected], "cut at {cut}");
-            // What is added next is whole again.
+            // A record added afterwards is complete.
             journal.append(&"next").unwrap();
             assert_eq!(open().1.records.len(), expected + 1, "cut at {cut}");
         }

@@ -1,4 +1,4 @@
-//! The lock on a work folder. The system gives it back when the run that holds it is gone, however it went.
+//! Lock on a work folder. The system releases it when the run ends for any reason.
 
 use super::work;
 use crate::error::{Error, Result};
@@ -6,14 +6,13 @@ use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Enters a work folder and locks it, for the output folder of a path.
+/// Enters and locks the work folder for the output folder of a path.
 ///
 /// # Errors
-/// Another run holds the lock; something else stands where the work folder or its lock should; the operating system
-/// refuses.
+/// A lock held by another run; something else in place of the work folder or its lock; a failed system call.
 pub(super) fn lock(folder: &Path, path: &Path) -> Result<File> {
     let at = folder.join("lock");
-    // A run that ends removes lock and folder: then once more. It cannot end a hundred times.
+    // A run that ends removes lock and folder: retry. This cannot happen a hundred times in a row.
     for _ in 0..100 {
         work::enter(folder)?;
         let file = match work::open(&at) {
@@ -35,7 +34,7 @@ pub(super) fn lock(folder: &Path, path: &Path) -> Result<File> {
     Err(Error::input(path, None, "folder", "another run that writes there", expected))
 }
 
-/// True if a path still leads to an open file: the run that held a lock before may have removed it.
+/// True if a path still leads to an open file: the previous holder of the lock may have removed it.
 fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     {
@@ -43,7 +42,7 @@ fn is_at(file: &File, path: &Path) -> bool {
         let place = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
         file.metadata().map(place).ok() == fs::symlink_metadata(path).map(place).ok()
     }
-    // Elsewhere an open file cannot be removed.
+    // On other systems an open file cannot be removed.
     #[cfg(not(unix))]
     {
         let _ = file;

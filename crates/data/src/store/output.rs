@@ -1,16 +1,16 @@
-//! An output folder that is being made: one run makes it, and whatever stops that run the folder stays whole.
+//! An output folder under construction: one run writes it, and an interruption leaves the existing folder intact.
 //!
 //! ```text
 //! out/
-//!   denim/            the result: put in place in one step, when all of it is written
-//!   .denim.work/      beside it, while a run makes it; nobody else can enter it
-//!     lock            held by that run
-//!     new/            what it has written so far
-//!     journal         what it has finished, for a run that goes on from there
+//!   denim/            the result: put in place in one step, once complete
+//!   .denim.work/      private work folder of the run
+//!     lock            held by the run
+//!     new/            output so far
+//!     journal         finished work, for a run that resumes
 //! ```
 //!
-//! What a killed run leaves in the work folder is cleared by the next one that gets the lock; only the journal is kept.
-//! What no run leaves there, such as a link, is refused.
+//! Remains of a killed run are cleared by the next run that gets the lock; only the journal is kept. Contents that no
+//! run leaves there, such as links, are refused.
 
 use super::folder::{existing_target, parent, sync_folder};
 use super::journal::{Journal, Recalled};
@@ -23,26 +23,26 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// A folder that this run makes, and no other meanwhile. Dropped, it leaves nothing behind but a journal.
+/// An output folder claimed by this run exclusively. Dropped, it leaves at most a journal behind.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// The path, links followed.
+    /// Path of the folder, links followed.
     target: PathBuf,
     work: PathBuf,
     journal: Option<Journal>,
     in_place: bool,
     _lock: File,
-    /// Goes last: removes the folders above.
+    /// Dropped last: removes empty parent folders.
     _above: MadeFolders,
 }
 
 impl OutputFolder {
-    /// Claims a folder, which need not exist; makes those above it.
+    /// Claims a folder, which need not exist; creates its parents.
     ///
     /// # Errors
-    /// Another run has claimed it; the path names something that is not a folder; something is planted in the work folder;
-    /// the operating system refuses.
+    /// A folder claimed by another run; a path to something other than a folder; foreign contents in the work folder;
+    /// a failed system call.
     pub fn claim(path: &Path) -> Result<Self> {
         let old = existing_target(path)?;
         let target = old.clone().unwrap_or_else(|| path.to_path_buf());
@@ -68,50 +68,50 @@ impl OutputFolder {
         Ok(claimed)
     }
 
-    /// The folder, as it was named.
+    /// Path of the folder, as given.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where it is made meanwhile.
+    /// The work folder.
     pub fn work(&self) -> &Path {
         &self.work
     }
 
-    /// How many records are kept for a later run.
+    /// Number of records kept for a later run.
     pub fn kept(&self) -> usize {
         self.journal.as_ref().map_or(0, Journal::len)
     }
 
-    /// True once the new folder stands in the place of the old one.
+    /// True once the new folder has replaced the old one.
     pub fn is_in_place(&self) -> bool {
         self.in_place
     }
 
-    /// What a former run with the same key has finished, and opens the journal for more.
+    /// Returns the records of an earlier run with the same key, and opens the journal for more.
     ///
-    /// * `key` — all that determines the result
+    /// * `key` — everything that determines the result
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// A failed system call.
     pub fn recall<T: DeserializeOwned>(&mut self, key: &impl Serialize) -> Result<Recalled<T>> {
         let (journal, recalled) = Journal::open(&self.work.join("journal"), key)?;
         self.journal = Some(journal);
         Ok(recalled)
     }
 
-    /// Keeps one more record, should this run be stopped; nothing before [`OutputFolder::recall`].
+    /// Keeps one more record for a run that resumes; does nothing before [`OutputFolder::recall`].
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// A failed system call.
     pub fn keep(&mut self, record: &impl Serialize) -> Result<()> {
         self.journal.as_mut().map_or(Ok(()), |journal| journal.append(record))
     }
 
-    /// Builds the whole folder, then puts it in the place of the old one, which is deleted with the journal.
+    /// Builds the whole folder, then replaces the old one, which is deleted together with the journal.
     ///
     /// # Errors
-    /// Those of `build`; the operating system refuses. The old folder is as it was then.
+    /// Those of `build`; a failed system call. The old folder is unchanged then.
     pub fn replace(&mut self, build: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
         let new = self.work.join("new");
         fs::create_dir(&new).map_err(|source| Error::io(&new, source))?;
@@ -125,7 +125,7 @@ impl OutputFolder {
         };
         put(&new, &self.target)?;
         if let Err(error) = sync_folder(&parent(&self.target)) {
-            // The disk may not hold it: back, so that an error always means the old folder.
+            // The disk may not hold it: swap back, so that an error always means the old folder.
             put(&self.target, &new)?;
             return Err(failed(error));
         }
@@ -133,14 +133,14 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Swaps the new folder and the old one, in one step where the system can.
+    /// Swaps the new folder and the old one, atomically where the system supports it.
     fn exchange(&self, new: &Path) -> std::io::Result<()> {
         #[cfg(target_os = "linux")]
         {
             use rustix::fs::{CWD, RenameFlags, renameat_with};
             use rustix::io::Errno;
             match renameat_with(CWD, new, CWD, &self.target, RenameFlags::EXCHANGE) {
-                // Some network file systems cannot.
+                // Some network file systems lack this.
                 Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => {}
                 done => return Ok(done?),
             }
@@ -154,15 +154,15 @@ impl OutputFolder {
         fs::rename(&aside, new)
     }
 
-    /// Clears what a killed run has left, but for its journal.
+    /// Clears the remains of a killed run except its journal.
     fn clear_former(&self) -> Result<()> {
         let [new, old] = ["new", "old"].map(|name| self.work.join(name));
         if old.is_dir() && !self.target.exists() {
-            // It was killed in the middle of a swap that takes two steps.
+            // Killed in the middle of a two-step swap.
             fs::rename(&old, &self.target).map_err(|source| Error::io(&self.target, source))?;
         }
         for folder in [new, old].iter().filter(|folder| folder.exists()) {
-            // Links within it are removed, never what they lead to.
+            // Links are removed, not their targets.
             fs::remove_dir_all(folder).map_err(|source| Error::io(folder, source))?;
         }
         Ok(())
@@ -171,19 +171,19 @@ impl OutputFolder {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // What cannot be removed now is cleared by the next run.
+        // Files that cannot be removed now are cleared by the next run.
         let _ = self.clear_former();
-        // A journal that was not opened is of a run of another kind.
+        // An unopened journal belongs to another kind of run.
         if self.in_place || self.journal.as_ref().is_some_and(|journal| journal.len() == 0) {
             let _ = fs::remove_file(self.work.join("journal"));
         }
-        // The lock is still held, and given back when its file is closed.
+        // The lock is still held; closing its file releases it.
         let _ = fs::remove_file(self.work.join("lock"));
         let _ = fs::remove_dir(&self.work);
     }
 }
 
-/// Folders that did not exist before, the innermost first; those that stay empty are removed again.
+/// Newly created folders, innermost first; those still empty are removed again.
 #[derive(Debug)]
 struct MadeFolders(Vec<PathBuf>);
 
@@ -245,7 +245,7 @@ mod tests {
             fs::create_dir_all(work.join(left)).unwrap();
             fs::write(work.join(left).join(content), "").unwrap();
         }
-        // Somebody's own file stays.
+        // A file of the user stays.
         fs::write(work.join("mine"), "").unwrap();
         let claimed = OutputFolder::claim(&path).unwrap();
         assert_eq!((names(&path), names(&work)), (vec!["whole".into()], vec!["lock".into(), "mine".into()]));

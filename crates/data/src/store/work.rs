@@ -1,17 +1,17 @@
-//! The work folder beside an output folder: private, and nothing is followed, read or removed in it but what a run leaves.
+//! The private work folder beside an output folder. Only contents left by a run are followed, read or removed.
 //!
-//! Whoever may write beside the output, or has packed the folder that it lies in, could have planted a folder of that name
-//! with links or pipes in it.
+//! Anyone with write access to the parent folder, or the author of an archive that contained it, could have planted a
+//! folder of that name with links or pipes in it.
 
 use crate::error::{Error, Result};
 use std::fs::{self, DirBuilder, File, Metadata};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Makes a work folder that nobody else can enter, or takes one that a stopped run has left.
+/// Creates a private work folder, or takes over one left by a stopped run.
 ///
 /// # Errors
-/// What is there is no folder, or not one that only this user can write; the operating system refuses.
+/// Something other than a folder, or a folder that others can write; a failed system call.
 pub(super) fn enter(work: &Path) -> Result<()> {
     let failed = |source| Error::io(work, source);
     match private().create(work) {
@@ -19,7 +19,7 @@ pub(super) fn enter(work: &Path) -> Result<()> {
         made => return made.map_err(failed),
     }
     let about = match fs::symlink_metadata(work) {
-        // Another run has ended just now: opening the lock will tell.
+        // Another run has just ended: opening the lock will show.
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
         about => about.map_err(failed)?,
     };
@@ -29,10 +29,10 @@ pub(super) fn enter(work: &Path) -> Result<()> {
     check_owner(work, &about)
 }
 
-/// Opens a file of a work folder, or makes it.
+/// Opens or creates a file of a work folder.
 ///
 /// # Errors
-/// What is there is no regular file, or has a second name; the operating system refuses.
+/// Something other than a regular file, or a file with a second hard link; a failed system call.
 pub(super) fn open(path: &Path) -> Result<File> {
     let failed = |source| Error::io(path, source);
     let mut options = File::options();
@@ -54,10 +54,10 @@ pub(super) fn open(path: &Path) -> Result<File> {
     Ok(file)
 }
 
-/// Refuses a work folder in which stands what no run leaves.
+/// Refuses a work folder with contents that no run leaves.
 ///
 /// # Errors
-/// A link, a pipe or a device; a file for a folder, or a folder for a file; the operating system refuses.
+/// A link, a pipe or a device; a file in place of a folder, or the reverse; a failed system call.
 pub(super) fn check(work: &Path) -> Result<()> {
     for (name, is_folder) in [("journal", false), ("new", true), ("old", true)] {
         let path = work.join(name);
@@ -72,7 +72,7 @@ pub(super) fn check(work: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Refuses anything but folders and regular files in a folder.
+/// Refuses a folder that contains anything but folders and regular files.
 fn check_tree(folder: &Path) -> Result<()> {
     let failed = |source| Error::io(folder, source);
     for entry in fs::read_dir(folder).map_err(failed)? {
@@ -87,7 +87,8 @@ fn check_tree(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Refuses what is no regular file, and one with a second name, under which somebody else's would be written.
+/// Refuses anything but a regular file, and files with a second hard link, through which another file would be
+/// overwritten.
 fn check_file(path: &Path, about: &Metadata) -> Result<()> {
     if !about.is_file() {
         return Err(planted(path, kind(about), "a file"));
@@ -99,13 +100,13 @@ fn check_file(path: &Path, about: &Metadata) -> Result<()> {
     Ok(())
 }
 
-/// Refuses a folder of another user, and one that others may write.
+/// Refuses a folder owned by another user, or writable by others.
 #[cfg(unix)]
 fn check_owner(work: &Path, about: &Metadata) -> Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt};
     let mut builder = tempfile::Builder::new();
     builder.prefix(".").suffix(".tmp").permissions(fs::Permissions::from_mode(0o700));
-    // Not every file system keeps owners and permissions: a new folder shows how one of this user looks here.
+    // Not every file system stores owners and permissions: a new folder shows the values for this user.
     let own = builder.tempdir_in(super::folder::parent(work)).and_then(|own| own.path().metadata());
     let own = own.map_err(|source| Error::io(work, source))?;
     let written_by_others = |about: &Metadata| about.mode() & 0o022;

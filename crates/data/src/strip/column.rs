@@ -1,18 +1,19 @@
-//! A column of the machine's table and its unit, which is said or asked for but never guessed.
+//! A column of the machine table and its unit, which is stated but never guessed.
 
 use crate::error::Result;
 use crate::io::shown;
 use crate::io::table::Table;
 
-/// A column, and its unit if the name does not say it.
+/// A column, and its unit if the name does not contain it.
 ///
-/// As text: `COLUMN` or `COLUMN:UNIT`, split at the last colon. A name says its unit by an ending such as `_mm` or
-/// `_N`, or in brackets: `Load (N)`, `Strain [%]`.
+/// As text: `COLUMN` or `COLUMN:UNIT`, split at the last colon. A name contains its unit as an ending such as `_mm`
+/// or `_N`, or in brackets: `Load (N)`, `Strain [%]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Its name in the header, exactly.
+    /// Exact name in the header.
     pub name: String,
-    /// `m`, `mm`, `cm` or `in`; `N`, `kN`, `cN`, `mN`, `gf`, `kgf` or `lbf`; `1` or `%`. `None` = the name says it.
+    /// `m`, `mm`, `cm` or `in`; `N`, `kN`, `cN`, `mN`, `gf`, `kgf` or `lbf`; `1` or `%`. `None` = contained in the
+    /// name.
     pub unit: Option<String>,
 }
 
@@ -25,7 +26,7 @@ impl From<&str> for Column {
     }
 }
 
-/// What a column measures.
+/// Quantity of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Length,
@@ -36,11 +37,11 @@ pub(super) enum Quantity {
 #[derive(PartialEq)]
 struct Unit {
     quantity: Quantity,
-    /// As it is listed.
+    /// Name in lists.
     name: &'static str,
     /// Other spellings.
     also: &'static [&'static str],
-    /// In SI.
+    /// Factor to SI.
     factor: f64,
 }
 
@@ -48,7 +49,7 @@ const fn unit(quantity: Quantity, name: &'static str, also: &'static [&'static s
     Unit { quantity, name, also, factor }
 }
 
-/// Capitals count: MN is not mN. Small letters alone stand where column names are all small.
+/// Case matters: MN is not mN. Lower-case spellings exist for tables with lower-case column names.
 const UNITS: [Unit; 13] = [
     unit(Quantity::Length, "m", &[], 1.0),
     unit(Quantity::Length, "mm", &[], 1e-3),
@@ -65,7 +66,7 @@ const UNITS: [Unit; 13] = [
     unit(Quantity::Strain, "%", &["percent"], 1e-2),
 ];
 
-/// A column that was found and whose unit is known.
+/// A column with known position and unit.
 pub(super) struct Series {
     place: usize,
     factor: f64,
@@ -111,7 +112,7 @@ impl Series {
         Ok(Self { place, factor: unit.factor })
     }
 
-    /// A row's value in SI.
+    /// Value of a row in SI.
     pub(super) fn value(&self, table: &Table, row: usize) -> Result<f64> {
         let value = self.factor * table.number(row, self.place)?;
         if value.is_finite() {
@@ -126,10 +127,10 @@ fn named(text: &str) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| unit.name == text || unit.also.contains(&text))
 }
 
-/// The unit that a column's name ends in: `travel_mm`, `Travel (mm)`, `Travel [mm]`.
+/// The unit contained in a column name: `travel_mm`, `Travel (mm)`, `Travel [mm]`.
 fn said(name: &str) -> Option<&'static Unit> {
     let in_brackets = |open: char, close: char| Some(name.strip_suffix(close)?.rsplit_once(open)?.1.trim());
-    // strain_1 is the first strain gauge rather than a strain in units of one.
+    // strain_1 is the first strain gauge, not a strain in units of one.
     let ending = || name.rsplit_once('_').map(|(_, ending)| ending).filter(|ending| *ending != "1");
     in_brackets('(', ')').or_else(|| in_brackets('[', ']')).or_else(ending).and_then(named)
 }

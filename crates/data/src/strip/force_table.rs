@@ -1,4 +1,4 @@
-//! The table of one pull, or of one shear test, as a stress–strain curve, without any fit.
+//! Converts the table of one pull, or of one shear test, to a stress–strain curve without a fit.
 //!
 //! ```text
 //! green          ε = (λ² − 1)/2    σ = F/(w λ)       second Piola–Kirchhoff stress per width: model stvk
@@ -6,10 +6,11 @@
 //! shear          ε = γ             σ = F/w − T γ     shear between parallel bars: all models
 //! ```
 //!
-//! F is the force, w the width at rest, λ the clamps' distance over the gauge length. The strip is taken to be in
-//! uniform strain and free to narrow, which costs nothing where weft and warp are independent. Between parallel bars that
-//! keep their distance, γ is the shift over that distance; a shear tester pulls the sheet across the shift with a tension
-//! T per width, and with w_u = (1, 0), w_v = (γ, 1) a tension along warp of energy T γ²/2 adds T γ to the force.
+//! F is the force, w the width at rest, λ the clamp distance over the gauge length. The strip is assumed to be in
+//! uniform strain and free to narrow, which requires no energy in models with independent weft and warp. Between
+//! parallel bars at a constant distance, γ is the shift over that distance. A shear tester pulls the sheet across the
+//! shift with a tension T per width; with w_u = (1, 0), w_v = (γ, 1), a tension along warp with energy T γ²/2 adds T
+//! γ to the force.
 //!
 //! Sources: F/(w λ) from dW = F dλ/w and dε = λ dλ; Volino et al. 2009 for shear between bars.
 
@@ -25,45 +26,45 @@ use cloth_sim::strain_measure::StrainMeasure;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Which strain and stress a table is turned into.
+/// Strain and stress measure of the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Measure {
     /// Green strain, second Piola–Kirchhoff stress.
     Green,
     /// Engineering strain, nominal stress.
     Engineering,
-    /// Shear between parallel bars, less what a tension across them adds.
+    /// Shear between parallel bars, minus the contribution of a tension across them.
     Shear {
-        /// That tension per width, N/m; 0 if there is none.
+        /// Tension per width, N/m; 0 if there is none.
         tension: f64,
     },
 }
 
-/// What the table does not say, and what of it to take.
+/// Settings: information missing from the table, and the part of it to use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTable {
-    /// Width of the strip at rest, across the pull; of a sheared sheet along the bars. m.
+    /// Width of the strip at rest, across the pull, or of a sheared sheet along the bars, m.
     pub width: f64,
-    /// Distance of the clamps at rest, m; strains need none.
+    /// Clamp distance at rest, m; not needed for strains.
     pub gauge: Option<f64>,
-    /// How far the strip was pulled, or the bars were shifted.
+    /// Extension of the strip, or shift of the bars.
     pub extension: Extension,
-    /// The load cell's reading.
+    /// Load cell reading.
     pub force: Column,
-    /// The rows to take, both ends included; the first below the header is 1, `usize::MAX` the last. Default: all.
+    /// Rows to use, both ends included; the first below the header is 1, `usize::MAX` the last. Default: all.
     pub rows: Option<RangeInclusive<usize>>,
-    /// Which strain and stress.
+    /// Strain and stress measure.
     pub measure: Measure,
 }
 
 /// Reads a table of force over elongation as one of stress over strain.
 ///
-/// Where no row is at zero and all are above it, a row without strain and stress is put before them: so the strip was at
-/// the gauge length.
+/// If all rows lie above zero, a row with zero strain and stress is added in front: the strip is assumed free at the
+/// gauge length.
 ///
 /// # Errors
-/// A setting outside what it may be; not a table; a missing column or unit; a number that is not finite; clamps less than
-/// half a gauge length apart or more than ten; strains that do not ascend; a force at zero strain.
+/// A setting outside its range; a file that is not a table; a missing column or unit; a number that is not finite; a
+/// clamp distance below half or above ten gauge lengths; strains that do not ascend; a force at zero strain.
 pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
     test.validate()?;
     let table = Table::read_columns(path, &test.columns())?;
@@ -115,7 +116,7 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
 }
 
 impl ForceTable {
-    /// The names of the columns that the table must have.
+    /// Names of the required columns.
     pub fn columns(&self) -> [&str; 2] {
         [&self.extension.column().name, &self.force.name]
     }
@@ -182,7 +183,7 @@ mod tests {
         );
         let shear = ForceTable { measure: Measure::Shear { tension: 100.0 }, ..green.clone() };
         assert!(near(&read(table, &shear).unwrap().stresses, &[0.0, 190.0, 580.0]));
-        // The clamps' distance, the rest left out.
+        // The clamp distance, without the rest state.
         let separation = test(Extension::Separation("apart:m".into()), Measure::Green);
         let found = read("apart,load\n0.22,10\n0.24,30\n", &separation).unwrap();
         assert!(near(&found.strains, &[0.0, 0.105, 0.22]) && found.stresses[0] == 0.0);
@@ -190,7 +191,7 @@ mod tests {
             found.to_csv().lines().next(),
             Some("green_strain,pk2_stress_n_per_m,engineering_strain,nominal_stress_n_per_m")
         );
-        // What stands beside is what the clamps and the load cell said.
+        // The extra columns hold the values of clamps and load cell.
         let last =
             found.to_csv().lines().last().map(|row| row.split(',').map(|f| f.parse().unwrap()).collect());
         let last: Vec<f64> = last.unwrap();
@@ -213,7 +214,7 @@ mod tests {
             let error = read(&format!("travel_mm,load\n{rows}\n"), &green).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         }
-        // A column's name may hold anything; the message stays one line.
+        // A column name may contain anything; the message stays on one line.
         let named = test(Extension::Displacement("a\u{14}b_mm".into()), Measure::Green);
         let error = read("a\u{14}b_mm,load\n5000,1\n", &named).unwrap_err().to_string();
         assert!(error.contains(":2 a\\u{14}b_mm: found 26 times"), "{error}");

@@ -1,17 +1,17 @@
-//! Which rows of a table are looked at, and how far apart its clamps may be.
+//! Row selection and the range of clamp distances.
 
 use crate::error::Result;
 use crate::io::table::Table;
 use std::ops::{Range, RangeInclusive};
 
-/// The clamps of a tensile test are this many gauge lengths apart; other values are another unit or quantity.
+/// Clamp distances of a tensile test in gauge lengths; other values indicate another unit or quantity.
 pub(super) const SEPARATION: RangeInclusive<f64> = 0.5..=10.0;
 
-/// The rows that may be looked at, from 0.
+/// Selected rows, from 0.
 pub(super) fn chosen_rows(table: &Table, rows: Option<&RangeInclusive<usize>>) -> Result<Range<usize>> {
     let count = table.rows();
     if count == 0 {
-        return Err(table.incomplete("row", "nothing below the header", "one row at least"));
+        return Err(table.incomplete("row", "nothing below the header", "at least one row"));
     }
     let Some(rows) = rows else { return Ok(0..count) };
     let (first, last) = (*rows.start(), *rows.end());

@@ -1,4 +1,4 @@
-//! A sequence into a measurement set on disk, which is made if there is none.
+//! Adds a sequence to a measurement set on disk, which is created if missing.
 
 use crate::error::{Error, Result};
 use crate::frame::{Fabric, MeasurementSet, Sequence};
@@ -6,10 +6,10 @@ use crate::io::{fill_set, read_fabric, refuse_other_folder, write_sequence};
 use crate::store::OutputFolder;
 use std::path::Path;
 
-/// Two numbers that differ by less are one number written twice.
+/// Relative difference below which two numbers count as equal.
 const SAME: f64 = 1e-6;
 
-/// What is known of the sample. A new set needs name and areal density; an old one must agree with what is given.
+/// Sample data. A new set requires name and areal density; for an existing set the given values must agree.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sample {
     /// Name of the fabric.
@@ -20,25 +20,25 @@ pub struct Sample {
     pub thickness: Option<f64>,
 }
 
-/// What was done to the set.
+/// Result of [`add_to_set`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Added {
-    /// It was made, with this sequence.
+    /// Created the set with this sequence.
     NewSet,
-    /// It has one sequence more.
+    /// Added the sequence to an existing set.
     NewSequence,
-    /// Its sequence of that name is another one now.
+    /// Replaced the sequence of the same name.
     Replaced,
 }
 
-/// Adds a sequence to a set's folder; makes the set if there is no `fabric.toml`.
+/// Adds a sequence to a set folder; creates the set if there is no `fabric.toml`.
 ///
-/// * `replace` — an older sequence of that name may be replaced, with all that its folder holds
+/// * `replace` — allows replacing a sequence of the same name, including all contents of its folder
 ///
 /// # Errors
-/// What is known of the sample is not enough for a new set, or not what an old one says; a sequence of that name
-/// exists; the folder holds something other than a set; the sequence could not be read back. Nothing is written then.
-/// Or the operating system refuses.
+/// Sample data that are insufficient for a new set, or contradict an existing one; an existing sequence of that name;
+/// a folder that holds something other than a set; a sequence that does not read back. Nothing is written in these
+/// cases. A failed system call.
 pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, replace: bool) -> Result<Added> {
     let fabric_file = set_folder.join("fabric.toml");
     if set_folder.exists() && !set_folder.is_dir() {
@@ -48,7 +48,7 @@ pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, repla
         refuse_other_folder(set_folder, "fabric.toml")?;
         let fabric = new_fabric(&fabric_file, sample, sequence)?;
         let mut claimed = OutputFolder::claim(set_folder)?;
-        // Another run may have made it until just now.
+        // Another run may have created it in the meantime.
         if !fabric_file.exists() {
             let set = MeasurementSet { fabric, sequences: vec![sequence.clone()] };
             claimed.replace(|temporary| fill_set(temporary, set_folder, &set))?;
@@ -71,7 +71,7 @@ pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, repla
     Ok(if exists { Added::Replaced } else { Added::NewSequence })
 }
 
-/// The sample of a new set. Its extents are those of the sequence's specimen along the yarns.
+/// The sample of a new set, with the extents of the specimen along the yarns.
 fn new_fabric(path: &Path, sample: &Sample, sequence: &Sequence) -> Result<Fabric> {
     let missing = |field: &str, expected: &str| {
         Error::input(
@@ -99,7 +99,7 @@ fn new_fabric(path: &Path, sample: &Sample, sequence: &Sequence) -> Result<Fabri
     })
 }
 
-/// Refuses another fabric's sequence.
+/// Refuses a sequence of another fabric.
 fn check_agreement(path: &Path, sample: &Sample, fabric: &Fabric) -> Result<()> {
     let refuse = |field: &str, found: String, given: String| {
         Err(Error::input(path, None, field, found, format!("{given}, the value given (or give none)")))

@@ -1,4 +1,4 @@
-//! What the table of a strip test does not say, and what of it to take.
+//! Settings of a strip test: information missing from the table, and the part of it to use.
 
 use super::column::Column;
 use crate::error::{Error, Result};
@@ -9,12 +9,12 @@ use nalgebra::{Rotation2, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
-/// No strip is longer or wider, m.
+/// Largest length and width of a strip, m.
 pub(super) const LARGEST: f64 = 10.0;
-/// The largest reading of an empty load cell, N.
+/// Largest allowed reading of an empty load cell, N.
 const LARGEST_ZERO: f64 = 1e6;
 
-/// How a strip was cut: which way it was pulled.
+/// Direction of the pull relative to the yarns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// Along the weft yarns.
@@ -26,7 +26,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// The kind of its sequence.
+    /// Kind of the sequence.
     pub fn kind(self) -> Kind {
         match self {
             Self::Weft => Kind::StretchWeft,
@@ -36,65 +36,65 @@ impl Direction {
     }
 }
 
-/// How the table tells the clamps' distance.
+/// Representation of the clamp distance in the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Extension {
     /// The distance itself, a length.
     Separation(Column),
-    /// What was added to the gauge length, a length.
+    /// Increase over the gauge length, a length.
     Displacement(Column),
-    /// What was added to the gauge length, divided by it (engineering strain).
+    /// Increase divided by the gauge length (engineering strain).
     Strain(Column),
 }
 
-/// At which distance of the clamps the strip is straight and free: strains count from there.
+/// Clamp distance at which the strip is straight and free, the reference of strains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FreeLength {
-    /// At the gauge length.
+    /// The gauge length.
     Gauge,
-    /// At this one, m: the strip was put in slack, or under tension.
+    /// A given length, m, for a strip mounted slack or under tension.
     Length(f64),
-    /// Where the first loading comes to zero, if it is followed down from this force, N, by a parabola.
+    /// The zero of the first loading, extrapolated by a parabola from this force, N.
     Preload(f64),
 }
 
-/// A strip test: what the table does not say, and what of the table to take.
+/// Settings of a strip test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StripTest {
     /// Name of the sequence. Default: its kind.
     pub name: String,
-    /// Which way the strip was pulled.
+    /// Direction of the pull.
     pub direction: Direction,
-    /// Distance of the clamps at displacement zero, m.
+    /// Clamp distance at zero displacement, m.
     pub gauge: f64,
     /// The free length. Default: the gauge length.
     pub free_length: FreeLength,
     /// Width of the strip, across the pull, m.
     pub width: f64,
-    /// The clamps' distance.
+    /// Clamp distance.
     pub extension: Extension,
     /// The load cell's reading, positive in tension.
     pub force: Column,
-    /// What the load cell reads with nothing in it, N. Default: 0.
+    /// Load cell reading without load, N. Default: 0.
     pub zero: f64,
-    /// How much machine and clamps lengthen, m/N: it is taken off the extension. Default: 0.
+    /// Compliance of machine and clamps, m/N, subtracted from the extension. Default: 0.
     pub compliance: f64,
-    /// The column that numbers the branches of the test. Default: `branch` if the table has it; else branches are
-    /// found where the extension turns back by more than 2 % of its range, and numbered from 0.
+    /// Column that numbers the branches of the test. Default: `branch` if the table has it; otherwise branches are
+    /// split where the extension reverses by more than 2 % of its range, and numbered from 0.
     pub branch_column: Option<String>,
-    /// The branches to take. Default: all.
+    /// Branches to use. Default: all.
     pub branches: Option<Vec<usize>>,
-    /// The rows to look at, both ends included; the first row below the header is 1, blank lines do not count.
+    /// Rows to use, both ends included; the first row below the header is 1, and blank lines do not count.
     /// `usize::MAX` = the last one. Default: all.
     pub rows: Option<RangeInclusive<usize>>,
-    /// Take the first row of every branch and then each so many-th. Default: 1, every row.
+    /// Use the first row of every branch and then every n-th. Default: 1, every row.
     pub every: usize,
-    /// Standard deviation of the load cell, N. Default: not known.
+    /// Standard deviation of the load cell, N. Default: unknown.
     pub force_noise: Option<f64>,
 }
 
 impl Extension {
-    /// The column that tells it.
+    /// Column of the extension.
     pub fn column(&self) -> &Column {
         match self {
             Self::Separation(column) | Self::Displacement(column) | Self::Strain(column) => column,
@@ -103,7 +103,7 @@ impl Extension {
 }
 
 impl StripTest {
-    /// The names of the columns that the table must have.
+    /// Names of the required columns.
     pub fn columns(&self) -> Vec<&str> {
         let asked = [&self.extension.column().name, &self.force.name];
         asked.into_iter().chain(&self.branch_column).map(String::as_str).collect()
@@ -129,10 +129,10 @@ impl StripTest {
         }
     }
 
-    /// Checks the numbers.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// The first one that is outside what it may be.
+    /// The first setting outside its range.
     pub fn validate(&self) -> Result<()> {
         let refuse = |field, found: String, expected: &str| {
             Err(Error::Setting { field, found, expected: expected.into() })
@@ -162,7 +162,7 @@ impl StripTest {
             return refuse("every", "0".into(), "1 for every row, 2 for every second, …");
         }
         if self.branches.as_ref().is_some_and(Vec::is_empty) {
-            return refuse("branches", "none".into(), "one branch at least");
+            return refuse("branches", "none".into(), "at least one branch");
         }
         match self.force_noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
             Some(noise) => refuse("force_noise", noise.to_string(), "a standard deviation above 0, in N"),

@@ -1,4 +1,4 @@
-//! Small tables with known answers, and tables and settings that must be refused, with the whole message.
+//! Small tables with known results, and invalid tables and settings with their full messages.
 
 use super::*;
 use crate::frame::Fabric;
@@ -37,13 +37,13 @@ fn read(text: &str, test: &StripTest) -> Result<Sequence> {
     read_strip(&path, test).map(|strip| strip.sequence)
 }
 
-/// The message, the table's path without its folder.
+/// The message, with the path of the table reduced to its name.
 fn message(text: &str, test: &StripTest) -> String {
     let message = read(text, test).unwrap_err().to_string();
     message.find("t.csv").map_or(message.clone(), |start| message[start..].into())
 }
 
-/// Extension of the moving clamp and the force on it along the pull, of all frames but the rest.
+/// Extension of the moving clamp and force along the pull, for all frames after the rest state.
 fn curve(sequence: &Sequence) -> Vec<[f64; 2]> {
     let pull = sequence.force_direction.unwrap();
     let frames = sequence.frames.iter().skip(1);
@@ -98,7 +98,7 @@ fn the_first_frame_is_the_rest_and_every_row_another() {
     let steps: Vec<_> =
         sequence.frames.iter().map(|frame| (frame.cycle.unwrap(), frame.phase.unwrap())).collect();
     let [up, down] = [Phase::Loading, Phase::Unloading];
-    // The last branch has one row only: nothing tells which way it goes.
+    // The last branch has only one row, which does not determine its direction.
     let last = (1, Phase::Hold);
     let expected =
         [(0, Phase::Hold), (0, up), (0, up), (0, up), (0, down), (0, down), (1, up), (1, up), last];
@@ -141,7 +141,7 @@ fn branches_rows_and_thinning_choose_rows() {
     chosen(&without, StripTest { branch_column: number, branches: Some(vec![3]), ..test() }, &[8]);
     chosen(&plain(), StripTest { rows: Some(6..=7), ..test() }, &[6, 7]);
     chosen(&plain(), StripTest { rows: Some(7..=usize::MAX), ..test() }, &[7, 8]);
-    // A second header line with units, and a last line with words, are no data.
+    // A second header line with units and a last line of text are not data.
     let text = plain().replace("N\n", "N\n,,m,N\n") + "end,,,\n";
     chosen(&text, StripTest { rows: Some(2..=9), branches: Some(vec![2]), ..test() }, &[6, 7]);
 }
@@ -155,7 +155,7 @@ fn strip(text: &str, test: &StripTest) -> Strip {
 
 #[test]
 fn what_the_machine_adds_is_taken_off() {
-    // The load cell is off by 0.3 N, and the machine lengthens by 1 mm for each newton of the true force.
+    // The load cell is off by 0.3 N, and the machine has a compliance of 1 mm/N of the true force.
     let (zero, compliance) = (0.3, 1e-3);
     use Extension::{Displacement, Separation, Strain};
     for (header, extension, of) in [
@@ -188,7 +188,7 @@ fn strains_count_from_the_free_length() {
 
 #[test]
 fn a_preload_is_followed_down_to_the_free_length() {
-    // A parabola from 78 mm on, seen from 70 or from 80 mm on; slack below.
+    // A parabola starting at 78 mm, recorded from 70 or from 80 mm on; slack below.
     let force = |separation: f64| {
         let taut = (separation - 0.078f64).max(0.0);
         100.0 * taut + 2e4 * taut * taut
@@ -207,7 +207,7 @@ fn a_preload_is_followed_down_to_the_free_length() {
             assert!((strip(&text, &with(preload)).free_length - 0.078).abs() < 1e-9);
         }
         let error = read(&text, &with(90.0)).unwrap_err().to_string();
-        assert!(error.contains("does not lead from zero through 90 N"), "{error}");
+        assert!(error.contains("does not pass from zero through 90 N"), "{error}");
     }
 }
 
@@ -230,7 +230,7 @@ fn a_row_that_repeats_the_one_before_is_left_out_and_said() {
 
 #[test]
 fn rows_after_a_breakage_are_left_out_and_the_last_one_before_is_named() {
-    // Every row twice, the first two not asked for: it breaks after row 60 of the table.
+    // Every row twice, the first two not selected: breakage after row 60 of the table.
     let force = |i: i32| if i <= 30 { 0.1 * f64::from(i) } else { 0.5 };
     let rows = (1..=40).map(|i| format!("{0},{1}\n{0},{1}\n", f64::from(i) * 1e-4, force(i)));
     let text = format!("d_m,f_N\n{}", rows.collect::<String>());
@@ -242,7 +242,7 @@ fn rows_after_a_breakage_are_left_out_and_the_last_one_before_is_named() {
     };
     let mut strip = strip(&text, &test);
     let notices = strip.inspect(None);
-    let broken = notices.iter().find(|notice| notice.found.contains("it broke, or slipped")).unwrap();
+    let broken = notices.iter().find(|notice| notice.found.contains("it broke or slipped")).unwrap();
     assert_eq!((broken.severity, broken.place.as_str()), (Severity::Remark, "t.csv row 59"));
     assert_eq!((strip.rows().len(), strip.rows().last()), (29, Some(&59)));
     assert_eq!((strip.sequence.frames.len(), strip.branches()), (30, vec![0]));
@@ -276,7 +276,7 @@ fn bad_tables_are_refused() {
     );
     assert_eq!(
         message("clamp_distance_m,force_N\n", &test()),
-        "t.csv row: found nothing below the header, expected one row at least"
+        "t.csv row: found nothing below the header, expected at least one row"
     );
 }
 
@@ -314,14 +314,14 @@ fn a_unit_is_never_guessed() {
         "d_m",
         "t.csv:1 f_N: found the unit N, expected one of m, mm, cm, in",
     );
-    // A name may be of characters that move a terminal's cursor.
+    // A name may contain characters that move the cursor of a terminal.
     check(
         "\u{1b}d,f_N",
         Extension::Separation("\u{1b}d".into()),
         "f_N",
         "t.csv:1 \\u{1b}d: found no unit, expected one of m, mm, cm, in, in its name as \\u{1b}d [UNIT] or asked for as \\u{1b}d:UNIT",
     );
-    // Nor is a whole row that was taken for a name repeated.
+    // A whole row taken for a name is not repeated in full.
     let long = "d".repeat(2000);
     let short = "d".repeat(60) + "…";
     check(
@@ -345,11 +345,10 @@ fn a_unit_is_never_guessed() {
 #[test]
 fn a_strip_that_only_gets_shorter_and_a_zero_that_no_reading_reaches_are_refused() {
     let shrinking = StripTest { free_length: FreeLength::Length(0.12), ..test() };
-    let words = "t.csv clamp_distance_m: found no clamps farther apart than the free length, 0.12 m, expected an extension \
-                 that grows where the strip is pulled: the other sign, or another free length";
+    let words = "t.csv clamp_distance_m: found no clamp distance above the free length, 0.12 m, expected an extension \
+                 that grows with the pull: the other sign, or another free length";
     assert_eq!(message(&plain(), &shrinking), words);
-    let words =
-        "zero: found 2, expected a reading with nothing in the clamps: at most the largest force, 0.8 N";
+    let words = "zero: found 2, expected a reading without load: at most the largest force, 0.8 N";
     assert_eq!(message(&plain(), &StripTest { zero: 2.0, ..test() }), words);
 }
 
@@ -360,7 +359,8 @@ fn a_machine_that_would_lengthen_as_far_as_it_went_is_doubted() {
     fs::write(&path, plain()).unwrap();
     let notices = |compliance| read_strip(&path, &StripTest { compliance, ..test() }).unwrap().inspect(None);
     // 0.8 N at 16 mm.
-    let said = |notice: &Notice| notice.found.contains("a compliance that takes off 40 % of the extension");
+    let said =
+        |notice: &Notice| notice.found.contains("a compliance that accounts for 40 % of the extension");
     assert!(notices(8e-3).iter().any(said) && !notices(1e-3).iter().any(|n| n.found.contains("compliance")));
 }
 
@@ -399,7 +399,7 @@ fn bad_settings_are_refused() {
     );
     check(
         StripTest { branches: Some(vec![]), ..test() },
-        "branches: found none, expected one branch at least",
+        "branches: found none, expected at least one branch",
     );
     check(
         StripTest { force_noise: Some(0.0), ..test() },

@@ -1,27 +1,27 @@
-//! Where a strip breaks, or slips in its clips: the force falls while it gets longer.
+//! Detects breakage or slip in the clips: the force drops while the strip gets longer.
 
 use super::reading::{NOISE, Pull, Reading, digits};
 use crate::notice::{Notice, Severity};
 
-/// A force has fallen if so large a share of it is lost while the clips move apart. Yarns that break one by one, before the
-/// strip does, lose less.
+/// Share of the force that counts as lost while the clips move apart. Yarns that break one by one before the strip
+/// lose less.
 const LOST: f64 = 0.15;
-/// If they stand still it relaxes, but never by so much.
+/// While the clips stand still the force relaxes, but never by this share.
 const RELAXED: f64 = 0.5;
-/// Of a mean step of the clips: less is standing still.
+/// Share of a mean clip step below which the clips stand still.
 const STILL: f64 = 0.1;
-/// A loading has so many readings before it is worth judging.
+/// Minimum number of readings of a loading.
 const FEW: usize = 4;
 
-/// The last reading before it, and the first after.
+/// The last reading before the breakage and the first after it.
 pub(super) struct Breakage {
-    /// The reading with the largest force; none beyond it is of use.
+    /// Reading with the largest force; later ones are unusable.
     pub(super) last: usize,
-    /// The first reading by which the force has fallen.
+    /// First reading with the reduced force.
     fallen: usize,
 }
 
-/// The first loading that ends so.
+/// Finds the first loading that ends in a breakage.
 pub(super) fn find(pull: &Pull) -> Option<Breakage> {
     if !pull.is_in_order() {
         return None;
@@ -36,9 +36,9 @@ pub(super) fn find(pull: &Pull) -> Option<Breakage> {
 fn of_loading(readings: &[Reading], pull: &Pull) -> Option<Breakage> {
     let [first, _, .., end] = readings else { return None };
     let step = (end.separation - first.separation) / (readings.len() - 1) as f64;
-    // What noise and slack do is no fall.
+    // Drops within noise or slack do not count.
     let least = (2.0 * NOISE * pull.noise).max(0.05 * pull.largest_force());
-    // One reading alone is no peak. What the force would be without relaxing since the peak.
+    // A peak needs two readings. `expected` is the force without relaxation since the peak.
     let held = |row: usize| readings[row].force.min(readings[row - 1].force);
     let (mut peak, mut expected) = (1, held(1));
     for row in 2..readings.len() {
@@ -53,7 +53,7 @@ fn of_loading(readings: &[Reading], pull: &Pull) -> Option<Breakage> {
         }
         let lost = expected - now.force > LOST * largest || largest - now.force > RELAXED * largest;
         let longer = now.separation - readings[peak].separation > STILL * step;
-        // A force that is back at once was a bad reading.
+        // A force that recovers at once indicates a bad reading.
         let regained = readings[row + 1..].iter().take(2).any(|later| later.force >= largest);
         if peak >= FEW && lost && longer && largest - now.force > least && !regained {
             return Some(Breakage { last: peak, fallen: row });
@@ -63,16 +63,16 @@ fn of_loading(readings: &[Reading], pull: &Pull) -> Option<Breakage> {
 }
 
 impl Breakage {
-    /// Tells of it.
+    /// The notice.
     pub(super) fn notice(&self, pull: &Pull) -> Notice {
         let [last, fallen] = [self.last, self.fallen].map(|row| &pull.readings[row]);
         let found = format!(
-            "{} N with the clamps {:.2} mm apart, and then {} N while the strip gets longer: it broke, or slipped",
+            "{} N with the clamps {:.2} mm apart, then {} N while the strip gets longer: it broke or slipped",
             digits(last.force, 3),
             1e3 * last.separation,
             digits(fallen.force, 3),
         );
-        let expected = "force that rises: what follows is left out".into();
+        let expected = "force that rises: later readings are left out".into();
         pull.notice(Severity::Remark, last, found, expected)
     }
 }

@@ -1,18 +1,19 @@
-//! Forces of a size that no cloth has: another unit.
+//! Forces implausible for cloth, which indicate another unit.
 
 use super::reading::{Pull, digits};
 use crate::notice::{Notice, Severity};
 use cloth_sim::curve::soundness::MEMBRANE_STIFFNESS;
 
-/// A metre of cloth that is softer than the weight of so many metres of itself hangs down by more than a quarter.
+/// A metre of cloth whose stiffness is below the weight of this many metres of itself stretches by more than a
+/// quarter when hung.
 const SOFTEST_M: f64 = 2.0;
-/// Largest stress by areal density, m²/s²: 1 N/tex along the pull, as fabrics of aramid just before they break.
+/// Largest stress per areal density, m²/s²: 1 N/tex along the pull, as in aramid fabrics just before they break.
 const STRONGEST: f64 = 1e6;
-/// Stiffness by areal density of common cloth, m²/s², to find the unit that is meant.
+/// Stiffness per areal density of common cloth, m²/s², used to guess the intended unit.
 const COMMON: f64 = 1e4;
-/// A unit is likely that makes it common within this factor.
+/// A unit is plausible if it brings the stiffness within this factor of the common value.
 const LIKELY: f64 = 100.0;
-/// Units in newtons.
+/// Units and their value in newtons.
 const UNITS: [(&str, f64); 8] = [
     ("MN", 1e6),
     ("kN", 1e3),
@@ -24,7 +25,7 @@ const UNITS: [(&str, f64); 8] = [
     ("µN", 1e-6),
 ];
 
-/// Judges the stiffness and the strength at the largest force.
+/// Checks stiffness and stress at the largest force.
 ///
 /// * `areal_density` — kg/m²
 pub(super) fn check(pull: &Pull, areal_density: f64) -> Option<Notice> {
@@ -47,7 +48,7 @@ pub(super) fn check(pull: &Pull, areal_density: f64) -> Option<Notice> {
     let off = |(_, unit): &&(&str, f64)| (unit * stiffness / (COMMON * areal_density)).ln().abs();
     let likely =
         UNITS.iter().filter(|unit| off(unit) <= f64::ln(LIKELY)).min_by(|a, b| off(a).total_cmp(&off(b)));
-    let likely = likely.map_or(String::new(), |(name, _)| format!(" (as {name} it would do)"));
+    let likely = likely.map_or(String::new(), |(name, _)| format!(" ({name} would be plausible)"));
     let expected = format!(
         "{lowest:.1} to {:.0e} N/m, and a stress of at most {:.1e} N/m of a cloth of {areal_density} kg/m²: \
          another unit than N{likely}, or another width",

@@ -1,4 +1,4 @@
-//! A polynomial through measured points, by least squares.
+//! Least-squares polynomial through measured points.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,12 +7,12 @@ pub(super) struct Polynomial {
     origin: f64,
     scale: f64,
     coefficients: DVector<f64>,
-    /// Covariance of the coefficients; `None` where no point is left over to judge them by.
+    /// Covariance of the coefficients; `None` without degrees of freedom.
     covariance: Option<DMatrix<f64>>,
 }
 
 impl Polynomial {
-    /// Through points, of a degree or one less than there are points; `None` without two different places.
+    /// Fits points with a degree of at most one less than their number; `None` without two distinct abscissae.
     pub(super) fn through(points: &[[f64; 2]], degree: usize) -> Option<Self> {
         let (origin, last) = (points.first()?[0], points.last()?[0]);
         let scale = last - origin;
@@ -42,12 +42,12 @@ impl Polynomial {
         terms.fold(0.0, |sum, (power, coefficient)| sum * t + power as f64 * coefficient) / self.scale
     }
 
-    /// How far it is from its first point to its last.
+    /// Distance from the first point to the last.
     pub(super) fn span(&self) -> f64 {
         self.scale
     }
 
-    /// Standard deviation of the polynomial there.
+    /// Standard deviation of the polynomial at `x`.
     pub(super) fn error(&self, x: f64) -> Option<f64> {
         let t = (x - self.origin) / self.scale;
         let powers = DVector::from_fn(self.coefficients.len(), |power, _| t.powi(power as i32));
@@ -59,12 +59,12 @@ impl Polynomial {
         points.iter().map(|&[x, value]| (value - self.at(x)).powi(2)).sum()
     }
 
-    /// Where a parabola, or a line, rises through a level; `None` if it does not.
+    /// Abscissa where a parabola or line rises through a level; `None` if it does not.
     pub(super) fn rises_through(&self, level: f64) -> Option<f64> {
         let [c, b, a] = [0, 1, 2].map(|power| self.coefficients.get(power).copied().unwrap_or(0.0));
         let c = c - level;
         let slope = (b * b - 4.0 * a * c).sqrt();
-        // The root at which the slope is positive, without cancellation on either side of the vertex.
+        // The root with positive slope, without cancellation on either side of the vertex.
         let t = if b >= 0.0 { -2.0 * c / (b + slope) } else { (slope - b) / (2.0 * a) };
         (slope > 0.0 && t.is_finite()).then_some(self.origin + self.scale * t)
     }

@@ -1,4 +1,4 @@
-//! The readings of a strip between two clips: separation and tension, branch by branch.
+//! Readings of a strip between two clips: separation and tension, by branch.
 
 use crate::branch::numbered;
 use crate::frame::{Clip, Frame, Sequence};
@@ -9,12 +9,12 @@ use crate::rectangle::rest_normal;
 use nalgebra::{Isometry3, Vector3};
 use std::ops::Range;
 
-/// A measured force and where the clips were.
+/// A measured force and the clip separation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reading {
-    /// Of the frame, or of the row that it was imported from.
+    /// Number of the frame, or of the imported row.
     pub(crate) number: usize,
-    /// Which loading or unloading it belongs to, from 0.
+    /// Loading or unloading branch, from 0.
     pub(crate) branch: usize,
     /// Free length between the clips, m.
     pub(crate) separation: f64,
@@ -22,11 +22,11 @@ pub(crate) struct Reading {
     pub(crate) force: f64,
 }
 
-/// All readings of a strip between two clips, in their order.
+/// All readings of a strip between two clips, in measured order.
 pub(super) struct Pull {
     /// Name of the sequence.
     pub(super) sequence: String,
-    /// What the readings' numbers count, as `forces.csv frame`.
+    /// Meaning of the reading numbers, e.g. `forces.csv frame`.
     pub(super) counted: String,
     /// Free length between the clips at rest, m.
     pub(super) gauge: f64,
@@ -34,22 +34,22 @@ pub(super) struct Pull {
     pub(super) width: f64,
     /// Weight of the clips along the pull, N.
     pub(super) weight: f64,
-    /// Standard deviation of a force, N: declared, else estimated.
+    /// Standard deviation of a force, N: declared, otherwise estimated.
     pub(super) noise: f64,
-    /// Shapes were measured, and with them the rest.
+    /// Shapes were measured, which include the rest state.
     pub(super) has_shapes: bool,
-    /// The load cycle that it starts with.
+    /// The first load cycle.
     pub(super) cycle: usize,
     pub(super) readings: Vec<Reading>,
 }
 
-/// A reading so many standard deviations off is no noise.
+/// A deviation of this many standard deviations is not noise.
 pub(super) const NOISE: f64 = 5.0;
-/// Nor is one so large a share of the largest force: a load cell's zero may drift so far (ISO 7500-1, class 1).
+/// Share of the largest force by which the zero of a load cell may drift (ISO 7500-1, class 1).
 const DRIFT: f64 = 1e-3;
 
 impl Pull {
-    /// The readings of a stretched strip; `None` if it is none, or not between two clips.
+    /// Readings of a stretched strip; `None` if the sequence is not one, or has other than two clips.
     pub(super) fn of(sequence: &Sequence, counted: &str, numbers: &[usize]) -> Option<Self> {
         let stretched = sequence.kind.holding() == Holding::Strip;
         let [first, second] = &sequence.clips[..] else { return None };
@@ -71,7 +71,7 @@ impl Pull {
             let [from, to] = &frame.poses[..] else { return None };
             let now = between([from, to]);
             let pull = now.try_normalize(0.0)?;
-            // What one clip is pulled with, the other is held with.
+            // The pull on one clip equals the reaction at the other.
             let tensions = [(0, -pull), (1, pull)];
             let known =
                 tensions.into_iter().filter_map(|(clip, pull)| Some(frame.clip_force(clip)?.dot(&pull)));
@@ -101,17 +101,17 @@ impl Pull {
         })
     }
 
-    /// The branches, as ranges of readings.
+    /// The branches as ranges of readings.
     pub(super) fn branches(&self) -> Vec<Range<usize>> {
         branches(&self.readings)
     }
 
-    /// True if the readings are in the order of the test: shuffled ones turn back all the time.
+    /// True if the readings are in test order; shuffled readings reverse at almost every row.
     pub(super) fn is_in_order(&self) -> bool {
         self.readings.len() >= 4 * self.branches().len()
     }
 
-    /// The first branch as separations and forces, if the strip is loaded in it.
+    /// Separations and forces of the first branch, if it is a loading.
     pub(super) fn first_loading(&self) -> Vec<[f64; 2]> {
         let first = self.branches().first().map_or(&[][..], |branch| &self.readings[branch.clone()]);
         match first {
@@ -120,7 +120,7 @@ impl Pull {
         }
     }
 
-    /// The last branch in which the strip is unloaded, from its end on.
+    /// The last unloading branch, from its end backwards.
     pub(super) fn last_unloading(&self) -> Vec<[f64; 2]> {
         let unloads = |branch: &Range<usize>| {
             let [from, to] = [branch.start, branch.end - 1].map(|row| self.readings[row].separation);
@@ -132,7 +132,7 @@ impl Pull {
         points
     }
 
-    /// A force that neither noise nor drift nor the clips' weight explains, N.
+    /// Smallest force that noise, drift and the weight of the clips do not explain, N.
     pub(super) fn threshold(&self) -> f64 {
         (NOISE * self.noise).max(DRIFT * self.largest_force()) + self.weight
     }
@@ -141,15 +141,15 @@ impl Pull {
         self.readings.iter().fold(0.0, |largest, reading| largest.max(reading.force.abs()))
     }
 
-    /// How far the clips travelled, m.
+    /// Travel of the clips, m.
     pub(super) fn travel(&self) -> f64 {
         let [low, high] = extent(self.readings.iter().map(|reading| reading.separation));
         high - low
     }
 
-    /// Sets readings aside.
+    /// Excludes readings.
     ///
-    /// * `readings` — ascending
+    /// * `readings` — indices, ascending
     pub(super) fn leave_out(&mut self, readings: &[usize]) {
         let mut row = 0..;
         self.readings.retain(|_| row.next().is_some_and(|row| readings.binary_search(&row).is_err()));
@@ -179,11 +179,11 @@ fn branches(readings: &[Reading]) -> Vec<Range<usize>> {
     ends.collect()
 }
 
-/// Standard deviation of a force, N: from how four readings in a row miss a parabola, whatever their distances. The median
-/// does not care for a few bad ones.
+/// Standard deviation of a force, N, from the deviation of four consecutive readings from a parabola at any spacing.
+/// The median ignores a few bad readings.
 pub(super) fn noise(readings: &[Reading]) -> f64 {
     let miss = |four: &[Reading]| {
-        // The third divided difference, as a sum of the forces with these weights.
+        // The third divided difference as a weighted sum of the forces.
         let weights: [f64; 4] = std::array::from_fn(|i| {
             let others = (0..4).filter(|&j| j != i);
             others.map(|j| four[i].separation - four[j].separation).product::<f64>().recip()
@@ -193,7 +193,7 @@ pub(super) fn noise(readings: &[Reading]) -> f64 {
     };
     let fours = branches(readings).into_iter().flat_map(|branch| readings[branch].windows(4));
     let misses = fours.map(miss).filter(|miss| miss.is_finite()).collect();
-    // The median of |x| for a normal x of deviation 1.
+    // The median of |x| for a normal x with unit deviation.
     median(misses).unwrap_or(0.0) / 0.6745
 }
 
@@ -201,7 +201,7 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)])
 }
 
-/// A number with so many digits that count.
+/// Formats a number with the given count of significant digits.
 pub(super) fn digits(value: f64, count: usize) -> String {
     let above_one = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
     match (-3.0..6.0).contains(&above_one) {

@@ -1,24 +1,25 @@
-//! A strip that is not free where it should be: put in under tension, slack, or with a load cell whose zero is off.
+//! Strips that are not free at the gauge length: mounted under tension or slack, or with an offset load cell.
 
 use super::polynomial::Polynomial;
 use super::reading::{Pull, digits};
 use super::toe::{self, CLEAR, Toe};
 use crate::notice::{Notice, Severity};
 
-/// Of the clips' travel: readings so near the gauge length are at it, and slack so short does not matter.
+/// Share of the clip travel within which a reading counts as at the gauge length, and slack is negligible.
 const NEAR: f64 = 0.01;
-/// Of the clips' travel: over so far a force hardly changes, and it is no tension.
+/// Share of the clip travel beyond which a free length is implausible: a force that varies this slowly is not a
+/// tension.
 const FAR: f64 = 0.5;
-/// Of the stress at the first reading: a free length that is unsure by more makes a band useless.
+/// Share of the first stress: a more uncertain free length makes the band useless.
 const UNSURE: f64 = 0.05;
-/// Of the force of the first reading: less may be the curve's own bend.
+/// Share of the first force; smaller offsets may be curvature of the curve.
 const SHARE: f64 = 0.3;
-/// Of the span of the first readings, or of the slack: from so near they are followed down to rest.
+/// Share of the span of the first readings, or of the slack, within which readings are extrapolated to rest.
 const CLOSE: f64 = 0.25;
-/// Of the largest force: an error that matters however little it shifts the free length.
+/// Share of the largest force from which an offset matters even if it hardly shifts the free length.
 const LARGE: f64 = 0.01;
 
-/// Judges the force at the gauge length, and where force begins.
+/// Checks the force at the gauge length and the separation at which force starts.
 pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     let (loading, near) = (pull.first_loading(), NEAR * pull.travel());
     let Some([first, _]) = loading.first().copied() else { return Vec::new() };
@@ -31,29 +32,29 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     }
 }
 
-/// True if a force where there should be none makes a curve wrong.
+/// True if a force where none is expected distorts a curve.
 ///
-/// * `shift` — by how much the free length is less if it is a tension, m
+/// * `shift` — reduction of the free length if the force is a tension, m
 fn matters(pull: &Pull, force: f64, shift: Option<f64>) -> bool {
     let shifts = shift.is_some_and(|shift| (NEAR..FAR).contains(&(shift.abs() / pull.travel())));
     force.abs() > pull.threshold() && (shifts || force.abs() > LARGE * pull.largest_force())
 }
 
-/// The strip was never seen at rest: its first readings tell whether it was free there, and how surely.
+/// Strip never observed at rest: its first readings show whether it was free there, and with what certainty.
 fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
     let (reading, start) = (pull.readings.first()?, toe::first_rows(loading, pull.noise)?);
     let force = start.at(pull.gauge);
     let length = start.rises_through(0.0);
     let slack = length.map(|length| length - pull.gauge).filter(|slack| *slack > 0.0);
     let close = match slack {
-        // A curve that bends up from rest on looks like slack from afar.
+        // Seen from afar, a curve that stiffens from rest on resembles slack.
         Some(slack) => reading.separation - pull.gauge < (1.0 + CLOSE) * slack,
         None => reading.separation - pull.gauge < CLOSE * start.span(),
     };
     let sure = force.abs() > SHARE * reading.force.abs() + 4.0 * start.error(pull.gauge)?;
     if close && sure && matters(pull, force, length.map(|length| pull.gauge - length)) {
         let found = format!(
-            "first readings that come to {} N at the gauge length, {:.2} mm",
+            "first readings that extrapolate to {} N at the gauge length, {:.2} mm",
             digits(force, 3),
             1e3 * pull.gauge
         );
@@ -74,8 +75,8 @@ fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
             1e3 * pull.gauge
         );
         let expected = format!(
-            "readings from rest on: of these the first tell the free length to ± {:.2} mm only, which makes the stress there ± \
-             {:.0} % unsure beside its band, if it is not known otherwise",
+            "readings from rest on: the first of these give the free length to ± {:.2} mm only, which makes the stress there ± \
+             {:.0} % uncertain in addition to its band, unless it is known otherwise",
             1e3 * unsure,
             100.0 * share
         );
@@ -83,12 +84,12 @@ fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
     })
 }
 
-/// How sure a place is where readings are followed down to zero: half of its 95 % band, m.
+/// Uncertainty of the extrapolated zero, m: half of its 95 % band.
 fn length_error(start: &Polynomial, length: f64) -> Option<f64> {
     Some(1.96 * start.error(length)? / start.slope(length))
 }
 
-/// The strip was seen slack.
+/// Strip observed slack.
 fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Notice> {
     let first = &pull.readings[0];
     let mut notices = Vec::new();
@@ -98,7 +99,7 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
         notices.push(pull.notice(Severity::Doubt, first, found, expected));
     }
     let gauge = format!("the gauge length, {:.2} mm", 1e3 * pull.gauge);
-    // A strip that was stretched before is longer than it was, which is no fault.
+    // A strip that was stretched before is longer, which is not a fault.
     if length > pull.gauge + near && pull.cycle == 0 {
         let taut = pull.readings.iter().find(|reading| reading.separation >= length).unwrap_or(first);
         let found = format!("no force until the clamps are {:.2} mm apart", 1e3 * length);
@@ -106,25 +107,25 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
         notices.push(pull.notice(Severity::Doubt, taut, found, expected));
     }
     if length < pull.gauge - near {
-        let found = format!("force from {:.2} mm between the clamps on", 1e3 * length);
+        let found = format!("force from a clamp distance of {:.2} mm on", 1e3 * length);
         let expected = format!("none below {gauge}: {}", free_length(length));
         notices.push(pull.notice(Severity::Doubt, first, found, expected));
     }
     notices
 }
 
-/// There is force as soon as there is a reading.
+/// Strip with force from the first reading on.
 fn unseen(pull: &Pull, loading: &[[f64; 2]], near: f64) -> Option<Notice> {
     let at_gauge = loading.partition_point(|row| row[0] < pull.gauge - near);
     let (rows, reading) = (loading.get(at_gauge..)?, pull.readings.get(at_gauge)?);
-    // Pulled step by step it may be free just before.
+    // In a stepwise test the strip may be free just before.
     let is_free = |row: &[f64; 2]| row[1].abs() <= pull.threshold() && row[0] > pull.gauge - 2.0 * near;
     if loading[..at_gauge].iter().any(is_free) {
         return None;
     }
     let start = toe::first_rows(rows, pull.noise)?;
     let (force, length) = (start.at(pull.gauge), start.rises_through(0.0));
-    // A parabola that does not come to zero is steeper here than further down, where it is no matter of noise.
+    // A parabola that does not reach zero is steepest here; noise is then irrelevant.
     let tangent = || (force > CLEAR * pull.noise).then(|| force / start.slope(pull.gauge));
     let shift = length.map(|length| pull.gauge - length).or_else(tangent);
     let wrong = [reading.force, force].iter().all(|force| matters(pull, *force, shift));
@@ -139,20 +140,22 @@ fn unseen(pull: &Pull, loading: &[[f64; 2]], near: f64) -> Option<Notice> {
     Some(pull.notice(Severity::Doubt, reading, found, expected))
 }
 
-/// Why there is force at the gauge length.
+/// Explains a force at the gauge length.
 ///
-/// * `length` — the free length if it is a tension, and half of its band, m
-/// * `slack` — what the load cell read while the strip was slack, if it was seen so, N
+/// * `length` — free length if the force is a tension, and half of its band, m
+/// * `slack` — load cell reading of the slack strip, if observed, N
 fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Option<f64>) -> String {
     let zero = format!("the load cell's zero is off, {}", taking_off(force));
-    // What is followed down to nowhere is no length.
+    // An extrapolation that leaves the plausible range gives no length.
     let tension = match length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length)) {
         Some((length, unsure)) => format!(
-            "the strip was put in under tension, {}, where a parabola through the first readings comes to zero{}",
+            "the strip was mounted under tension, {}, where a parabola through the first readings reaches zero{}",
             free_length(length),
             unsure.map_or(String::new(), |unsure| format!(", ± {:.2} mm", 1e3 * unsure))
         ),
-        None => "the strip was put in under tension, and its free length cannot be told from this".into(),
+        None => {
+            "the strip was mounted under tension, and these readings do not determine its free length".into()
+        }
     };
     let is = |level: f64| slack.is_some_and(|slack| (slack - level).abs() <= pull.threshold());
     if force < 0.0 || is(force) {
@@ -160,7 +163,7 @@ fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Opt
     } else if is(0.0) {
         tension
     } else {
-        format!("{tension}; or {zero}: what it reads with nothing in it tells which")
+        format!("{tension}; or {zero}: its unloaded reading tells which")
     }
 }
 

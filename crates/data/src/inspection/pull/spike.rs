@@ -1,26 +1,26 @@
-//! A reading far off those before and after it.
+//! Readings far from those before and after.
 
 use super::reading::{NOISE, Pull, digits};
 use crate::measure::median;
 use crate::notice::{Notice, Severity};
 use std::ops::Range;
 
-/// So many readings to either side are compared with.
+/// Number of readings on each side used for comparison.
 const NEIGHBOURS: usize = 3;
-/// A spike is off by so many of the larger steps from one reading to the next, the ninth of ten: a strip that is pulled
-/// step by step overshoots and relaxes by about one.
+/// A spike deviates by this many times the 90th percentile of the steps between readings. A strip pulled stepwise
+/// overshoots and relaxes by about one.
 const STEPS: f64 = 4.0;
-/// And by so many times what is no noise.
+/// Multiple of the noise threshold that a spike must exceed too.
 const CLEAR: f64 = 4.0;
 
-/// The readings that are spikes, ascending.
+/// Indices of the spikes, ascending.
 pub(super) fn find(pull: &Pull) -> Vec<usize> {
     pull.branches().into_iter().flat_map(|branch| of_branch(pull, branch)).collect()
 }
 
 fn of_branch(pull: &Pull, branch: Range<usize>) -> Vec<usize> {
     let forces: Vec<f64> = pull.readings[branch.clone()].iter().map(|reading| reading.force).collect();
-    // Of fewer a third may be bad, and the median with it.
+    // With fewer readings a third may be bad, which spoils the median.
     if forces.len() < 2 * NEIGHBOURS + 1 {
         return Vec::new();
     }
@@ -31,15 +31,15 @@ fn of_branch(pull: &Pull, branch: Range<usize>) -> Vec<usize> {
     let is_spike = |&row: &usize| {
         let near = &forces[row.saturating_sub(NEIGHBOURS)..(row + NEIGHBOURS + 1).min(forces.len())];
         let off = forces[row] - median(near.to_vec()).unwrap_or(0.0);
-        // Where a strip locks readings are far apart too, but in order.
+        // Where a strip locks, readings are far apart too, but monotonic.
         let in_order = (forces[row] - near[0]) * (near[near.len() - 1] - forces[row]) > 0.0;
         off.abs() > limit && !in_order
     };
-    // The ends of a branch have neighbours on one side only, and there a strip may break.
+    // The ends of a branch have neighbours on one side only, and a strip may break there.
     (1..forces.len() - 1).filter(is_spike).map(|row| branch.start + row).collect()
 }
 
-/// Names them.
+/// The notice that lists them.
 pub(super) fn notice(pull: &Pull, spikes: &[usize]) -> Option<Notice> {
     let (&first, others) = spikes.split_first()?;
     let reading = &pull.readings[first];
@@ -47,7 +47,7 @@ pub(super) fn notice(pull: &Pull, spikes: &[usize]) -> Option<Notice> {
         [] => String::new(),
         others => {
             let numbers: Vec<_> = others.iter().map(|&row| pull.readings[row].number.to_string()).collect();
-            format!(", and the like at {}", crate::io::shortened(&numbers.join(", "), 60))
+            format!(", and likewise at {}", crate::io::shortened(&numbers.join(", "), 60))
         }
     };
     let found = format!("{} N far off the readings before and after{others}", digits(reading.force, 4));

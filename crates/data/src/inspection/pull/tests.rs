@@ -1,4 +1,4 @@
-//! Made strips, 0.2 × 0.05 m: 2000 ε + 20000 ε² N/m, noise of 5 mN, with every fault and without.
+//! Synthetic strips, 0.2 × 0.05 m: 2000 ε + 20000 ε² N/m, noise of 5 mN, with each fault and without.
 
 use super::reading::digits;
 use super::*;
@@ -15,7 +15,7 @@ const GAUGE: f64 = 0.2;
 const NOISE_N: f64 = 5e-3;
 const SEEDS: u64 = 20;
 
-/// Force of a strip of some free length, N; slack below it.
+/// Force of a strip with the given free length, N; zero while slack.
 fn law(separation: f64, length: f64) -> f64 {
     let strain = (separation / length - 1.0).max(0.0);
     0.05 * (2000.0 * strain + 20000.0 * strain * strain)
@@ -59,7 +59,7 @@ fn fabric() -> Fabric {
     }
 }
 
-/// Severity, frame and words of everything noticed.
+/// Severity, frame and text of every notice.
 fn noticed(rows: &[[f64; 2]]) -> Vec<(Severity, String, String)> {
     let (_, notices) = inspect_sequence(&fabric(), &sequence(rows));
     let told = |notice: Notice| {
@@ -69,7 +69,7 @@ fn noticed(rows: &[[f64; 2]]) -> Vec<(Severity, String, String)> {
     notices.into_iter().map(told).collect()
 }
 
-/// The one notice, a doubt, and its frame.
+/// The single notice, which must be a doubt, and its frame.
 fn doubt(rows: &[[f64; 2]]) -> (String, String) {
     let mut all = noticed(rows);
     assert_eq!(all.len(), 1, "{all:?}");
@@ -78,13 +78,14 @@ fn doubt(rows: &[[f64; 2]]) -> (String, String) {
     (frame, words)
 }
 
-/// The number that follows a word.
+/// The number after a phrase.
 fn number(words: &str, after: &str) -> f64 {
     let (_, rest) = words.split_once(after).unwrap_or_else(|| panic!("no {after} in {words}"));
     rest.split([' ', ')']).next().unwrap().parse().unwrap()
 }
 
-/// Cycles that grow to 12 %, unloading below loading, with a set that stays: the strip is slack near the gauge length.
+/// Cycles that grow to 12 %, with unloading below loading and permanent set: the strip is slack near the gauge
+/// length.
 fn cycles() -> Vec<[f64; 2]> {
     let mut rows = Vec::new();
     let mut longest = GAUGE;
@@ -106,12 +107,12 @@ fn sound_strips_raise_no_notice() {
     let soft = |s: f64| 0.05 * 20.0 * (s / GAUGE - 1.0);
     let locking = |s: f64| 0.01 * (90.0 * (s / GAUGE - 1.0)).exp_m1();
     let stiff_first = |s: f64| 4.0 * (1.0 - (-(s - GAUGE) / 4e-4).exp()) + law(s, GAUGE);
-    // Pulled step by step, at every step it relaxes by a quarter of what it rose.
+    // Pulled stepwise, it relaxes at every step by a quarter of the rise.
     let steps = (0..100).map(|row| {
         let step = GAUGE + 8e-4 * (row / 4) as f64;
         [step, law(step, GAUGE) * (1.0 + 0.1 * 0.5f64.powi(row % 4))]
     });
-    // Held at the top of a loading while it relaxes by a third, then on.
+    // Held at the top of a loading while it relaxes by a third, then continued.
     let held = loading(|s| law(s, GAUGE)).into_iter().enumerate().flat_map(|(row, [s, force])| {
         let relaxed = move |time: f64| force * (0.67 + 0.33 * (-time / 5.0).exp());
         let regained = if row > 60 { 0.67 + 0.33 * (row - 60) as f64 / 40.0 } else { 1.0 };
@@ -119,7 +120,7 @@ fn sound_strips_raise_no_notice() {
         std::iter::once([s, force * regained])
             .chain((1..=hold).map(move |time| [s, relaxed(f64::from(time))]))
     });
-    // It relaxes while the clips come to a halt, and is let back.
+    // It relaxes while the clips come to a halt, then is released.
     let up = loading(|s| law(s, GAUGE));
     let [top, most] = *up.last().unwrap();
     let halt = [top + 1.2e-4, 0.93 * most];
@@ -189,7 +190,7 @@ fn a_tension_at_the_gauge_length_is_noticed_with_the_free_length() {
         assert!((number(&words, "--free-length-m ") - length).abs() < 1e-4, "{words}");
         assert!(words.contains("--zero 2.0") || words.contains("--zero 1.99"), "{words}");
         let off = 1e3 * (number(&words, "--free-length-m ") - length).abs();
-        inside += u64::from(off <= number(&words, "comes to zero, ± "));
+        inside += u64::from(off <= number(&words, "reaches zero, ± "));
     }
     assert!((SEEDS - 3..=SEEDS).contains(&inside), "{inside} of {SEEDS} within what is told");
 }
@@ -203,7 +204,7 @@ fn a_strip_that_was_never_at_rest_says_how_unsure_its_free_length_is() {
     assert_eq!(frame, "1");
     assert!(words.contains("8.00 mm beyond the free length, 200.00 mm"), "{words}");
     assert!((0.4..10.0).contains(&number(&words, "free length to ± ")), "{words}");
-    // Ten times as far, and many of them.
+    // Ten times as far, with many readings.
     let rows: Vec<[f64; 2]> =
         course(1.04 * GAUGE, 1.14 * GAUGE, 100).into_iter().map(|s| [s, law(s, GAUGE)]).collect();
     assert_eq!(noticed(&noisy(&rows, 1)), []);
@@ -211,12 +212,12 @@ fn a_strip_that_was_never_at_rest_says_how_unsure_its_free_length_is() {
 
 #[test]
 fn a_tension_that_is_a_small_share_of_the_force_is_noticed_where_it_shifts_the_strain() {
-    // 2 N of 800 N, as a standard's pretension is of a strong cloth: 400 ε + 4e5 ε² N/m.
+    // 2 N of 800 N, a standard's pretension for a strong cloth: 400 ε + 4e5 ε² N/m.
     let length = 0.19;
     let strong = |s: f64| 0.05 * (400.0 * (s / length - 1.0) + 4e5 * (s / length - 1.0).powi(3));
     let rows: Vec<[f64; 2]> = course(GAUGE, 0.25, 200).into_iter().map(|s| [s, strong(s)]).collect();
     let (_, words) = doubt(&noisy(&rows, 1));
-    assert!(words.contains("put in under tension"), "{words}");
+    assert!(words.contains("mounted under tension"), "{words}");
 }
 
 #[test]
@@ -234,18 +235,18 @@ fn a_slack_strip_is_noticed_with_the_free_length() {
 
 #[test]
 fn a_zero_that_is_off_is_told_from_tension_where_the_strip_was_seen_slack() {
-    let both = ["put in under tension", "zero is off"];
+    let both = ["mounted under tension", "zero is off"];
     let causes = |words: &str| both.map(|cause| words.contains(cause));
     for seed in 0..SEEDS {
-        // Nothing tells.
+        // Neither cause can be excluded.
         let (_, words) = doubt(&noisy(&loading(|s| law(s, GAUGE) + 0.6), seed));
         assert_eq!(causes(&words), [true; 2], "{words}");
         assert!((number(&words, "--zero ") - 0.6).abs() < 0.01, "{words}");
-        // Cloth does not push.
+        // Cloth cannot push.
         let (_, words) = doubt(&noisy(&loading(|s| law(s, GAUGE) - 0.6), seed));
         assert_eq!(causes(&words), [false, true], "{words}");
         assert!((number(&words, "--zero ") + 0.6).abs() < 0.01, "{words}");
-        // Unloading leads to where it is slack.
+        // Unloading reaches the slack range.
         for (offset, length, cause) in [(0.6, GAUGE, [false, true]), (0.0, 0.199, [true, false])] {
             let mut rows = loading(|s| law(s, length) + offset);
             rows.extend(course(0.22, GAUGE, 100).into_iter().skip(1).map(|s| [s, law(s, 0.204) + offset]));
@@ -257,7 +258,7 @@ fn a_zero_that_is_off_is_told_from_tension_where_the_strip_was_seen_slack() {
         assert_eq!(all.len(), 2, "{all:?}");
         assert!((number(&all[0].2, "--zero ") - 0.6).abs() < 0.01, "{all:?}");
         assert!((number(&all[1].2, "--free-length-m ") - 0.203).abs() < 1e-4, "{all:?}");
-        // The clamps were nearer than the gauge length, and force began before it.
+        // The clamps started below the gauge length, where force already began.
         let near = course(0.19, 0.22, 150).into_iter().map(|s| [s, law(s, 0.197)]);
         let (_, words) = doubt(&noisy(&near.collect::<Vec<_>>(), seed));
         assert!((number(&words, "--free-length-m ") - 0.197).abs() < 1e-4, "{words}");
@@ -267,7 +268,7 @@ fn a_zero_that_is_off_is_told_from_tension_where_the_strip_was_seen_slack() {
 #[test]
 fn what_follows_a_breakage_is_left_out() {
     let whole = loading(|s| law(s, GAUGE));
-    // It breaks after row 80 and tears on; or within one reading of the clamps; or slips by 3 mm and rises again.
+    // It breaks after row 80 and keeps tearing; or breaks within one reading; or slips by 3 mm and recovers.
     let torn = |row: usize| law(GAUGE + 0.0158, GAUGE) * 0.6 * 0.9f64.powi(row as i32 - 80);
     let tears = whole.iter().enumerate().map(|(row, &[s, f])| [s, if row < 80 { f } else { torn(row) }]);
     let snaps = whole.iter().enumerate().map(|(row, &[s, f])| match row {
@@ -294,7 +295,7 @@ fn what_follows_a_breakage_is_left_out() {
 #[test]
 fn steps_that_contradict_the_way_of_the_clips_are_named() {
     let rows = loading(|s| law(s, GAUGE));
-    // It slips by a millimetre at row 60, and less than a seventh of the force is lost.
+    // It slips by a millimetre at row 60 and loses less than a seventh of the force.
     let slipped: Vec<[f64; 2]> =
         rows.iter().map(|[s, _]| [*s, law(*s - if *s > 0.2119 { 1e-3 } else { 0.0 }, GAUGE)]).collect();
     let set_back: Vec<[f64; 2]> =
@@ -303,14 +304,14 @@ fn steps_that_contradict_the_way_of_the_clips_are_named() {
     for (rows, frame, said) in [
         (noisy(&slipped, 1), 61, "slipped"),
         (noisy(&slipped, 2), 61, "slipped"),
-        (saturated, 84, "load cell can read"),
+        (saturated, 84, "load cell reached its limit"),
     ] {
         let (at, words) = doubt(&rows);
         assert!(words.contains(said) && at.parse::<i32>().unwrap().abs_diff(frame) <= 1, "{at}: {words}");
     }
     let all = noticed(&noisy(&set_back, 1));
     assert!(
-        all.iter().any(|(_, at, words)| words.contains("was the extension set back?") && at == "61"),
+        all.iter().any(|(_, at, words)| words.contains("was the extension reset?") && at == "61"),
         "{all:?}"
     );
 }
@@ -322,7 +323,7 @@ fn a_strip_without_a_reading_at_rest_is_followed_down_to_it() {
     };
     for seed in 0..SEEDS {
         let (_, words) = doubt(&noisy(&from(1e-3, &|s| law(s, GAUGE) + 1.0), seed));
-        assert!(words.contains("come to 1.0") || words.contains("come to 0.9"), "{words}");
+        assert!(words.contains("extrapolate to 1.0") || words.contains("extrapolate to 0.9"), "{words}");
         let (_, words) = doubt(&noisy(&from(3.2e-3, &|s| law(s, GAUGE + 3e-3)), seed));
         assert!(words.contains("the strip was slack"), "{words}");
         assert!((number(&words, "--free-length-m ").abs() - 0.203).abs() < 2e-4, "{words}");
@@ -342,7 +343,7 @@ fn a_spike_is_named_and_nothing_else_is_blamed() {
         let mut rows = noisy(&loading(|s| law(s, GAUGE)), seed);
         (rows[30][1], rows[31][1], rows[70][1]) = (80.0, 75.0, 0.0);
         let (frame, words) = doubt(&rows);
-        assert!(frame == "31" && words.contains("the like at 32, 71;"), "{words}");
+        assert!(frame == "31" && words.contains("likewise at 32, 71;"), "{words}");
     }
 }
 
@@ -365,7 +366,7 @@ fn numbers_have_the_digits_that_count() {
 fn forces_of_another_unit_are_noticed() {
     for (factor, unit) in [(1e-6, "MN"), (1e-3, "kN"), (1e3, "mN"), (1e6, "µN")] {
         let (frame, words) = doubt(&loading(|s| factor * law(s, GAUGE)));
-        assert!(frame == "101" && words.contains(&format!("as {unit} it would do")), "{words}");
+        assert!(frame == "101" && words.contains(&format!("{unit} would be plausible")), "{words}");
     }
 }
 
@@ -374,7 +375,7 @@ fn any_two_clips_will_do_wherever_they_are() {
     let rows = noisy(&loading(|s| law(s, GAUGE / 1.0170820)), 3);
     let plain = sequence(&rows);
     let (_, expected) = inspect_sequence(&fabric(), &plain);
-    // Carried off and turned, with the force known on the other clip.
+    // Moved and rotated, with the force known on the other clip.
     let motion = Isometry3::new(Vector3::new(3.0, -2.0, 0.5), Vector3::new(0.3, -0.8, 1.9));
     let mut moved = plain.clone();
     moved.clips.reverse();

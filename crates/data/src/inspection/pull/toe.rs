@@ -1,4 +1,4 @@
-//! Where the force of a loading begins: seen, or found from the rows above.
+//! The onset of force in a loading: observed, or extrapolated from later rows.
 //!
 //! ```text
 //!  force          ╱            force         ╱
@@ -11,30 +11,30 @@
 
 use super::polynomial::Polynomial;
 
-/// A loading is followed down to zero from rows up to so many times the force that it begins with.
+/// A loading is extrapolated to zero from rows up to this multiple of its first force.
 const REACH: f64 = 5.0;
-/// That force counts as so many standard deviations at least, so that enough rows are above the noise.
+/// The first force counts as at least this many standard deviations, so that enough rows exceed the noise.
 pub(super) const CLEAR: f64 = 40.0;
-/// Rows that are needed on either side of a kink, and to follow a loading.
+/// Minimum number of rows on either side of a kink, and for an extrapolation.
 const FEW: usize = 4;
-/// A kink is one if a smooth curve with as many parameters has so many times its sum of squares.
+/// A kink exists if a smooth curve with as many parameters has this many times its sum of squares.
 const SHARPER: f64 = 4.0;
 
-/// Where a slack strip becomes taut.
+/// The onset of tension in a slack strip.
 pub(super) struct Toe {
-    /// Clips this far apart, m.
+    /// Clip separation, m.
     pub(super) length: f64,
-    /// What the load cell reads while the strip is slack, N.
+    /// Load cell reading while slack, N.
     pub(super) level: f64,
-    /// By how much the length would be less if that were a tension, m; `None` if it cannot be.
+    /// Reduction of the length if that reading were a tension, m; `None` if it cannot be.
     pub(super) shift: Option<f64>,
 }
 
-/// Finds the kink at which force begins.
+/// Finds the kink at which force starts.
 ///
 /// * `loading` — separations and forces
-/// * `threshold` — a change of force that is no noise, N
-/// * `least` — slack that does not matter, m
+/// * `threshold` — smallest change of force above the noise, N
+/// * `least` — negligible slack, m
 pub(super) fn find(loading: &[[f64; 2]], threshold: f64, least: f64) -> Option<Toe> {
     let mean = |rows: &[[f64; 2]]| rows.iter().map(|row| row[1]).sum::<f64>() / rows.len() as f64;
     let level = mean(loading.get(..FEW)?);
@@ -43,7 +43,7 @@ pub(super) fn find(loading: &[[f64; 2]], threshold: f64, least: f64) -> Option<T
     if slack < FEW || turn - start < least {
         return None;
     }
-    // The last rows may be taut already.
+    // The last of these rows may be taut already.
     let level = mean(&loading[..slack - slack / FEW]);
     let beyond = loading.iter().skip(slack + FEW).take_while(|row| row[0] <= 2.0 * turn - start);
     let window = loading.get(..slack + FEW + beyond.count())?;
@@ -67,7 +67,7 @@ pub(super) fn first_rows(loading: &[[f64; 2]], noise: f64) -> Option<Polynomial>
     Polynomial::through(&loading[..count], 2)
 }
 
-/// The free length: where a loading comes to zero, followed from a force down, m. `None` if it does not.
+/// Free length, m: where a loading reaches zero, extrapolated from a given force. `None` if it does not.
 ///
 /// * `from` — the force, N
 /// * `noise` — standard deviation of the force, N

@@ -1,11 +1,11 @@
-//! Damaged files end in an error, or still read; never in a panic.
+//! Damaged files give an error or still read; they never panic.
 
 use super::*;
 use rand::rngs::StdRng;
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 
-/// Pieces that have broken readers before.
+/// Fragments that have broken readers before.
 const PIECES: [&str; 22] = [
     "nan",
     "-inf",
@@ -52,7 +52,7 @@ fn no_bytes_make_a_reader_panic() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("set");
     write_set(&place, &set()).unwrap();
-    // One sequence of mesh files besides.
+    // Adds a sequence with mesh files.
     let frames = place.join("corners").join("frames");
     fs::create_dir(&frames).unwrap();
     let rows = "0 0 0\n0.1 0 0\n0.1 0.1 0\n0 0.1 0\n";

@@ -1,4 +1,4 @@
-//! Every defect of a file with the whole message that it ends in.
+//! Every defect of a file with its full message.
 
 mod absent;
 
@@ -6,7 +6,7 @@ use super::*;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-/// What one of the files of a valid set is turned into.
+/// Change of one file of a valid set.
 type Change<'a> = &'a dyn Fn(&Path);
 
 struct Sample {
@@ -15,7 +15,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// Copies a set that was written once: a hundred sets, each flushed to the disk, would take long.
+    /// Copies a set written once: writing and flushing a hundred sets would be slow.
     fn new() -> Self {
         static WRITTEN: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
             let folder = tempfile::tempdir().unwrap();
@@ -36,7 +36,7 @@ impl Sample {
         Self { _folder: folder, place }
     }
 
-    /// The message after a change, with paths from the set's folder on.
+    /// Message after a change, with paths relative to the set folder.
     fn message(&self, change: Change<'_>) -> String {
         change(&self.place);
         let error = read_set(&self.place).map_or_else(|error| error, |_| panic!("read in spite of a defect"));
@@ -46,7 +46,7 @@ impl Sample {
     }
 }
 
-/// Replaces a part of a text file and compares the message.
+/// Replaces part of a text file and compares the message.
 fn check(file: &str, cases: &[(&str, &str, &str)]) {
     let mut wrong = Vec::new();
     for (old, new, expected) in cases {
@@ -64,7 +64,7 @@ fn check(file: &str, cases: &[(&str, &str, &str)]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Compares the messages after changes of any kind.
+/// Compares messages after arbitrary changes.
 fn check_changes(cases: &[(Change<'_>, &str)]) {
     let mut wrong = Vec::new();
     for (index, (change, expected)) in cases.iter().enumerate() {
@@ -118,7 +118,7 @@ fn fabric_file() {
                 ":3 width_m: found duplicate key, expected every key once",
             ),
             ("width_m = 0.1\n", "", " width_m: found nothing, expected a value"),
-            // A key may hold quotes and line feeds: the message stays one line, and lists the known keys.
+            // A key may contain quotes and line feeds: the message stays on one line and lists the known keys.
             (
                 "width_m = 0.1",
                 "\"a`\\n, expected `b\" = 1",
@@ -174,7 +174,7 @@ fn test_file() {
             (
                 "mass_kg = 0.0133",
                 "mass_kg = -0.0133",
-                ":10 clips[0].mass_kg: found -0.0133, expected a mass, 0 at least",
+                ":10 clips[0].mass_kg: found -0.0133, expected a mass of 0 or more",
             ),
             (
                 "mass_kg = 0.0133",
@@ -486,7 +486,7 @@ fn shapes() {
             fs::write(array(place), bytes).unwrap();
         }
     };
-    // The first coordinate of the second frame stands 48 bytes after the header of 128.
+    // The first coordinate of the second frame is 48 bytes after the header of 128.
     let coordinate = |value: f32| {
         move |place: &Path| {
             let mut bytes = fs::read(array(place)).unwrap();
@@ -498,7 +498,7 @@ fn shapes() {
         let shapes = [0.0, 1.0].map(|offset| shape(offset).iter().map(|p| p * 1000.0).collect::<Vec<_>>());
         fs::write(array(place), npy::written(&[Some(&shapes[0]), Some(&shapes[1])], 4)).unwrap();
     };
-    // Shapes of float32 a thousand kilometres away.
+    // Shapes in float32 a thousand kilometres away.
     let far = |place: &Path| {
         let near = npy::written(&[Some(&shape(0.0)), Some(&shape(1.0))], 4);
         let (header, data) = near.split_at(128);
@@ -577,11 +577,11 @@ fn shapes() {
         ),
         (
             &far,
-            "bend/positions.npy data: found float32 coordinates of 1000001 m, expected float64 so far away, or an origin nearby (or millimetres? then divide by 1000)",
+            "bend/positions.npy data: found float32 coordinates of 1000001 m, expected float64 at this distance, or a nearer origin (millimetres? divide by 1000)",
         ),
         (
             &unseen,
-            "bend/positions.npy file: found no observed vertex in frame 1, expected one at least in every frame",
+            "bend/positions.npy file: found no observed vertex in frame 1, expected at least one in every frame",
         ),
         (
             &|place| fs::create_dir(place.join("bend/frames")).unwrap(),
@@ -590,7 +590,7 @@ fn shapes() {
         (&files(&[]), "corners/frames folder: found no file, expected 0000.obj, 0001.obj, … or .ply"),
         (
             &files(&["0000.obj", "0002.obj"]),
-            "corners/frames/0002.obj file: found frame 2, expected frame 1: none may miss",
+            "corners/frames/0002.obj file: found frame 2, expected frame 1: frames are numbered without gaps",
         ),
         (
             &files(&["0000.obj", "0.ply"]),
@@ -647,11 +647,11 @@ fn shapes() {
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 999999999999\nproperty float x\nend_header\n"),
-            "corners/frames/0.ply element vertex: found 999999999999, expected as many rows as the file holds",
+            "corners/frames/0.ply element vertex: found 999999999999, expected at most the number of rows in the file",
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement vertex 9\nend_header\n"),
-            "corners/frames/0.ply element vertex: found no property, expected one at least",
+            "corners/frames/0.ply element vertex: found no property, expected at least one",
         ),
         (
             &ply("ply\nformat ascii 1.0\nelement face 0\nproperty float x\nend_header\n"),
@@ -710,7 +710,7 @@ fn files_and_folders() {
         ),
         (
             &copy("corners/clips.csv", "bend/clips.csv"),
-            "bend/clips.csv file: found clips.csv in a bend-bias test, expected none: nothing is clipped in bending",
+            "bend/clips.csv file: found clips.csv in a bend-bias test, expected none: bending tests have no clips",
         ),
         (&huge, "fabric.toml file: found 3221225472 bytes, expected at most 2 GiB"),
         (&socket, "fabric.toml file: found a pipe, socket or device, expected a regular file"),

@@ -1,8 +1,8 @@
-//! What a set's files leave out, state in part or name in a way that is nobody's.
+//! Files that are missing, incomplete or misnamed.
 
 use super::*;
 
-/// Another text for one of the files.
+/// Replaces the text of a file.
 fn text(file: &'static str, text: &'static str) -> impl Fn(&Path) {
     move |place: &Path| fs::write(place.join(file), text).unwrap()
 }
@@ -22,7 +22,7 @@ fn names_and_columns() {
     );
     check(
         "corners/clips.csv",
-        &[("tx_m", "TX_M", ":1 header: found TX_M, expected tx_m (the name exactly so)")],
+        &[("tx_m", "TX_M", ":1 header: found TX_M, expected tx_m (exactly this name)")],
     );
     let cases: &[(Change<'_>, &str)] = &[
         (
@@ -85,7 +85,7 @@ fn folders_that_are_none_and_names_that_are_no_text() {
     let latin = |place: &Path| fs::write(place.join(std::ffi::OsStr::from_bytes(b"caf\xE9")), "").unwrap();
     let cases: &[(Change<'_>, &str)] = &[
         (&file, "set folder: found a file, expected a folder"),
-        (&latin, "caf\u{FFFD} name: found bytes that are no UTF-8, expected a name in UTF-8"),
+        (&latin, "caf\u{FFFD} name: found bytes that are not UTF-8, expected a name in UTF-8"),
     ];
     check_changes(cases);
 }
