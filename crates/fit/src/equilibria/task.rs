@@ -1,45 +1,45 @@
-//! What is simulated and compared, and how.
+//! The task of a simulation: components, objective, solver settings.
 
 use crate::optimise::robust::Robust;
 use cloth_sim::equilibrium::Settings;
 use cloth_sim::material::{Component, Curves};
 use serde::{Deserialize, Serialize};
 
-/// What a stage compares.
+/// The quantity that a stage compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Objective {
     /// The measured components of clip forces, N.
     Forces,
-    /// The places of the free nodes that were seen, m.
+    /// The positions of the free nodes that were observed, m.
     Positions,
 }
 
-/// Where the equilibria of the outer loop start.
+/// Start of the equilibria in the outer loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SolveStart {
-    /// At the frame's last equilibrium, moved ahead by the sensitivities; where that fails, at the replica's own start, and
+    /// At the frame's last equilibrium, extrapolated by the sensitivities; if that fails, at the replica's own start,
     /// then by load steps.
     #[default]
     LastEquilibrium,
-    /// At the measured shape of the frame, every time; where none was measured, at the replica's own start. No second try.
+    /// At the frame's measured shape, every time; at the replica's own start if none was measured. No fallback.
     ///
     /// Source: Miguel et al. 2012, §5.1.
     Measured,
 }
 
-/// What is simulated, and how.
+/// The task of a simulation.
 #[derive(Debug, Clone)]
 pub struct Task {
     /// The components that share the fitted curve.
     pub fitted: Vec<Component>,
-    /// What is compared.
+    /// The compared quantity.
     pub objective: Objective,
     /// The curves of the other components.
     pub known: Curves,
-    /// How equilibria are found.
+    /// Settings of the equilibrium solver.
     pub settings: Settings,
-    /// Where they start.
+    /// Start of the equilibria.
     pub start: SolveStart,
-    /// How far a residual counts in full.
+    /// Limit above which residuals get less weight.
     pub robust: Option<Robust>,
 }

@@ -1,4 +1,4 @@
-//! The specimen as the simulation sees it: a regular grid over the measured rest rectangle, in a frame of its own.
+//! The specimen in the simulation: a regular grid over the measured rest rectangle, in a frame of its own.
 //!
 //! ```text
 //! measured mesh (any triangulation, any place in space)        specimen frame
@@ -27,15 +27,15 @@ pub struct Specimen {
     pub mesh: Mesh,
     /// The grid.
     pub grid: Grid,
-    /// Where each grid node lies in the measured mesh.
+    /// Position of each grid node in the measured mesh.
     pub samples: Vec<MeshPoint>,
-    /// Cloth inside each clip that was cut off, m².
+    /// Cloth inside each clip, cut off from the grid, m².
     pub gripped: Vec<f64>,
 }
 
 impl Specimen {
-    /// Lays a grid over a sequence's rest mesh, less what lies inside bars that grip a whole side: that cloth moves rigidly,
-    /// and the grid's border falls on the bar's edge, wherever that is.
+    /// Lays a grid over a sequence's rest mesh, without the cloth inside bars that grip a whole side: it moves
+    /// rigidly, and the grid's border lies on the bar's edge, wherever that is.
     ///
     /// * `nodes` — columns and rows; `None` = as many cells as 25×25 nodes have, near square
     ///

@@ -11,7 +11,7 @@ fn unpolished_solutions_agree_with_polished_ones() {
             LeastSquares::new(random(&mut generator, 2 * n, n), random_vector(&mut generator, 2 * n) * 10.0);
         problem.rows = random(&mut generator, 5, n);
         problem.bounds = DVector::from_fn(5, |_, _| -generator.random_range(0.0..1.0));
-        // One row is no bound at all, one is of zeros.
+        // One row has no bound, one is zero.
         problem.bounds[0] = f64::NEG_INFINITY;
         problem.rows.row_mut(1).fill(0.0);
         problem.lower.fill(-1.0);
