@@ -25,7 +25,7 @@ pub fn check_output(folder: &Path) -> Result<()> {
             None,
             "--out",
             found,
-            "a new or empty folder, or a former result, which is replaced",
+            "a new or empty folder, or an earlier result, which is replaced",
         ))
     };
     if !folder.exists() {

@@ -50,7 +50,7 @@ impl<'a> Simulation<'a> {
         change: Option<&DVector<f64>>,
     ) -> FrameResult {
         let cloth = replica.cloth(frame);
-        // A poisoned pool only means that another frame panicked; its solvers keep no state between solves.
+        // A poisoned pool only means that another frame panicked; its solvers hold no state that matters.
         let take = || pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop();
         let mut solver = take().unwrap_or_else(|| Solver::new(cloth));
         let mut x = match self.task.start {

@@ -90,7 +90,7 @@ pub fn run(
     Ok(Entry { row, report, validation })
 }
 
-/// Without a stretch curve there is no prediction: the sheet has no in-plane stiffness.
+/// Without a stretch curve there is no prediction: nothing resists the pull of the clips.
 fn validation(
     set: &MeasurementSet,
     report: &FitReport,

@@ -20,7 +20,7 @@ use std::fmt;
 const MARGIN: f64 = 2e-3;
 /// Rounds in which κ follows the curve's own scale.
 const ROUNDS: usize = 12;
-/// A repaired curve below this share of the largest control value, by absolute value, counts as zero.
+/// A curve whose stiffness stays below this share of the given curve's largest control value counts as zero.
 const VANISHED: f64 = 1e-6;
 
 /// A repaired curve, and its distance from the given one.
@@ -59,7 +59,7 @@ impl fmt::Display for Unrepairable {
         match self {
             Self::Magnitude(finding) => write!(
                 f,
-                "a largest stiffness of {:.3e}, where {} {:.0e} is plausible: probably another unit, which no repair can tell",
+                "a largest stiffness of {:.3e}, where {} {:.0e} is plausible: probably another unit, which a repair cannot correct",
                 finding.value,
                 if finding.value < finding.limit { "at least" } else { "at most" },
                 finding.limit
@@ -67,10 +67,12 @@ impl fmt::Display for Unrepairable {
             Self::NoStiffness => {
                 write!(
                     f,
-                    "stress of the wrong sign over so much of its range that no stiffness at all is the nearest stable curve"
+                    "stress of the wrong sign over so much of its range that the nearest stable curve is zero"
                 )
             }
-            Self::Unsolved => write!(f, "no solution of the quadratic program: its values lie too far apart"),
+            Self::Unsolved => {
+                write!(f, "no solution of the quadratic program: its values differ too much in magnitude")
+            }
         }
     }
 }

@@ -86,7 +86,7 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     let mut reasons: Vec<(Grade, String)> =
         notices.iter().filter(doubted).map(|notice| (Grade::Amber, notice.to_string())).collect();
     if !stage.curve.observed {
-        reasons.push((Grade::Red, "the measurements do not tell it".into()));
+        reasons.push((Grade::Red, "the measurements do not determine it".into()));
         return Verdict::of(reasons);
     }
     reasons.extend(unsure(stage));
@@ -95,7 +95,10 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     let odd = stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty());
     reasons.extend(odd.map(|sequence| {
         let frames: Vec<String> = sequence.outliers.iter().take(4).map(usize::to_string).collect();
-        (Grade::Amber, format!("frame {} of {} lies far off the rest", frames.join(", "), sequence.name))
+        (
+            Grade::Amber,
+            format!("frame {} of {} stands out from its neighbours", frames.join(", "), sequence.name),
+        )
     }));
     let used: usize = stage.sequences.iter().map(|sequence| sequence.frames).sum();
     let dropped = stage.dropped.len() as f64 / (stage.dropped.len() + used).max(1) as f64;
@@ -104,17 +107,17 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
         reasons.push((Grade::Amber, found));
     }
     if stage.scatter.noise_is_overstated() {
-        let found = "less is left than the noise that was declared: is it too large?";
+        let found = "the residual is below the given noise, which may be too large";
         reasons.push((Grade::Amber, found.into()));
     }
     if used > 0 && used < FEWEST {
         reasons.push((
             Grade::Amber,
-            format!("{used} of {FEWEST} frames that it takes to contradict each other"),
+            format!("only {used} of the {FEWEST} frames needed to reveal a contradiction"),
         ));
     }
     if !stage.converged {
-        reasons.push((Grade::Amber, "the fit did not come to its minimum".into()));
+        reasons.push((Grade::Amber, "the fit did not converge".into()));
     }
     Verdict::of(reasons)
 }
@@ -157,14 +160,14 @@ fn unsure(stage: &StageReport) -> Option<(Grade, String)> {
     let widest =
         widest_band(stage).filter(|_| stage.curve.samples.iter().filter(seen).all(|s| s.band.is_some()));
     let Some((place, share)) = widest else {
-        return Some((Grade::Red, "how sure it is, is not known over all of its range".into()));
+        return Some((Grade::Red, "its uncertainty is not known over all of its range".into()));
     };
     let grade = grade(share, BAND);
     let (quantity, at) = match stage.components[0].is_bending() {
         true => ("moment", format!("{place:.1} 1/m")),
         false => ("stress", format!("{place:.4}")),
     };
-    let said = format!("known to ± {:.1} % of its largest {quantity} only, at {at}", 100.0 * share);
+    let said = format!("known only to ± {:.1} % of its largest {quantity}, at {at}", 100.0 * share);
     (grade > Grade::Green).then_some((grade, said))
 }
 
@@ -194,16 +197,16 @@ fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
     let bends = names(&Component::is_bending);
     if !bends.is_empty() {
         let said = format!(
-            "the sheet may buckle and its bending is assumed ({bends}): the band reaches to a sheet that does not bend, and \
-             tests of bending (fit) would narrow it"
+            "the sheet may buckle and its bending is assumed ({bends}): the band includes the case of a flat sheet; bending \
+             tests (fit) would narrow it"
         );
         return Some((Grade::Amber, said));
     }
     let stretches = names(&Component::is_stretch);
     (!stretches.is_empty()).then(|| {
         let said = format!(
-            "yarns that hardly give are assumed ({stretches}): where they do, shear comes out too soft, and tests of stretch \
-             would tell"
+            "nearly inextensible yarns are assumed ({stretches}): if they stretch, the fitted shear is too soft; stretch \
+             tests would settle it"
         );
         (Grade::Amber, said)
     })

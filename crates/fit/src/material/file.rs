@@ -212,7 +212,7 @@ fn measure(model: Model, component: Component) -> String {
         | StrainMeasure::Shear
         | StrainMeasure::Diagonal => format!("{stress} per width [N/m] over {strain} [1]"),
         StrainMeasure::RingTwo => {
-            "stress of ring-2 springs [N/m] over their strain [1], of this grid only".into()
+            "stress of ring-2 springs [N/m] over their strain [1], valid for this grid only".into()
         }
         StrainMeasure::Hinge => format!(
             "{stress} [N] over the strain of hinges [1/m], three times the curvature: stiffness_n_m is a third of the flexural \

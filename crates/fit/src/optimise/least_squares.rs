@@ -103,7 +103,7 @@ impl fmt::Display for Status {
         match self {
             Self::Optimal => write!(f, "solved"),
             Self::Inaccurate { kkt } => {
-                write!(f, "the conditions of optimality hold only to {kkt:.1e}, wanted {OPTIMAL:.0e}")
+                write!(f, "the optimality conditions hold only to {kkt:.1e}, not to {OPTIMAL:.0e}")
             }
             Self::Infeasible => write!(f, "the inequalities contradict one another"),
             Self::NotFinite => write!(f, "the least-squares problem contains NaN or infinite numbers"),

@@ -7,8 +7,8 @@
 //! σ² is the noise of a measurement, s² = ‖r‖²/(n − p) the residual variance of n measurements after p parameters.
 //! Noise is independent between measurements, so it averages out. Misfit (too few control points, hysteresis, a wrong
 //! model) is shared by neighbouring measurements: n of them then tell no more than p, hence the factor n/p. Only the
-//! part of s² above the value that noise σ² stays below in 99 of 100 fits counts as misfit, so that a band does not
-//! jump when misfit first exceeds chance.
+//! excess of s² over its 99 % quantile under noise alone counts as misfit, so that a band does not jump when misfit
+//! is first detected.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub struct Scatter {
     pub known: bool,
     /// s, root mean square of the residual per degree of freedom.
     pub residual: f64,
-    /// Misfit √(s² − qσ²), with q the ratio that chance stays below in 99 of 100 fits; 0 if s² is no more than that.
+    /// Misfit √(s² − qσ²), with q the 99 % quantile of s²/σ² under noise alone; 0 if s² is lower.
     pub misfit: f64,
     /// Measurements that a parameter can move.
     pub measurements: usize,
@@ -64,7 +64,7 @@ impl Scatter {
             Some(noise) => noise * noise,
             None => successive_variance(residual, tracks, &informative).unwrap_or(mean_square),
         };
-        // Value of s²/σ² that chance alone exceeds in one of a hundred fits.
+        // The 99 % quantile of s²/σ² under noise alone.
         let chance = match known {
             Some(_) => chi_square(freedom.max(1) as f64, Z_99) / freedom.max(1) as f64,
             None => {
@@ -90,8 +90,7 @@ impl Scatter {
 }
 
 impl Scatter {
-    /// True if the residual is lower than the given noise leaves in one of a hundred fits: the given noise is too
-    /// large.
+    /// True if the residual is below its 1 % quantile under the given noise: that noise is too large.
     pub fn noise_is_overstated(&self) -> bool {
         let freedom = self.freedom as f64;
         self.known
@@ -107,7 +106,7 @@ impl Scatter {
 }
 
 /// Variance of a residual after a fit of `parameters` parameters. If the noise is known: 1, in its units, unless the
-/// residual is lower than noise leaves in one of a hundred fits. Otherwise: the residual per degree of freedom.
+/// sum of squares is below its 1 % quantile. Otherwise: the sum of squares per degree of freedom.
 pub(crate) fn variance_left(residual: &DVector<f64>, parameters: usize, known: bool) -> f64 {
     let freedom = residual.len().saturating_sub(parameters).max(1) as f64;
     let sum = residual.norm_squared();

@@ -75,7 +75,7 @@ pub fn grow(
         curve = curve.with_stiffnesses(outcome.point.iter().copied().collect())?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
         if points == 1 && !felt {
-            let stopped = "one stiffness hardly changes what is compared".to_string();
+            let stopped = "a constant stiffness hardly changes the simulated values".to_string();
             return Ok(Growth { curve, outcome, domain, levels, stopped });
         }
         let all = points >= most;
@@ -101,11 +101,9 @@ pub fn grow(
         };
         if all || tries == rule.tries {
             let stopped = match tries {
-                0 if settings.variant.is_linear() => {
-                    "one stiffness is all that a linear variant has".to_string()
-                }
+                0 if settings.variant.is_linear() => "a linear variant has one stiffness".to_string(),
                 0 if points < settings.points => {
-                    format!("the frames carry no more than {points} control points")
+                    format!("the frames support no more than {points} control points")
                 }
                 0 => format!("all {points} control points are in use"),
                 _ => format!(
@@ -145,7 +143,7 @@ pub fn refit(
     let (outcome, domain, level) =
         fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangent, watch)?;
     let curve = start.with_stiffnesses(outcome.point.iter().copied().collect())?;
-    let stopped = format!("all {points} control points of the pass before are fitted again");
+    let stopped = format!("all {points} control points of the previous pass are fitted again");
     Ok(Growth { curve, outcome, domain, levels: vec![level], stopped })
 }
 

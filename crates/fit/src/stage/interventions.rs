@@ -43,7 +43,7 @@ pub struct Interventions {
     /// Load steps, or steps of a descent to rest, that were too long and were halved.
     #[serde(skip_serializing_if = "is_zero")]
     pub steps_halved: usize,
-    /// Time steps restarted with a descent all the way.
+    /// Time steps restarted with descent in every iteration.
     #[serde(skip_serializing_if = "is_zero")]
     pub time_steps_begun_anew: usize,
     /// Frames that continuation from the previous frame did not reach; they started from their measured shape.
@@ -130,19 +130,19 @@ impl Interventions {
             (self.equilibria_decided_by_rounding, "equilibria decided by rounding"),
             (self.matrices_clamped, "matrices clamped"),
             (self.matrices_damped, "matrices damped"),
-            (self.solves_by_levenberg_marquardt, "solves ended by Levenberg-Marquardt"),
-            (self.solves_continued, "solves by way of a softer or stiffer membrane"),
-            (self.unstable_balances_left, "unstable balances left"),
-            (self.solves_begun_anew, "solves begun anew"),
+            (self.solves_by_levenberg_marquardt, "solves finished by Levenberg-Marquardt"),
+            (self.solves_continued, "solves restarted with a softer or stiffer membrane"),
+            (self.unstable_balances_left, "unstable equilibria left"),
+            (self.solves_begun_anew, "solves restarted"),
             (self.solves_in_load_steps, "solves in load steps"),
             (self.steps_halved, "steps halved"),
-            (self.time_steps_begun_anew, "time steps begun anew, downhill"),
-            (self.frames_not_followed, "frames not followed from the one before"),
-            (self.steps_rejected, "steps of the fit taken back"),
-            (self.steps_inaccurate, "steps of the fit not solved to the last digit"),
-            (self.starts_projected, "starts moved to where the curve's constraints hold"),
-            (self.residuals_bent, "residuals that count less"),
-            (self.vertices_left_out, "vertices left out of the table's lines"),
+            (self.time_steps_begun_anew, "time steps restarted with descent"),
+            (self.frames_not_followed, "frames not reached from the previous one"),
+            (self.steps_rejected, "fit steps rejected"),
+            (self.steps_inaccurate, "fit steps solved inexactly"),
+            (self.starts_projected, "infeasible starts projected"),
+            (self.residuals_bent, "residuals downweighted"),
+            (self.vertices_left_out, "vertices too far off their line on the table"),
         ];
         let counted =
             counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));

@@ -19,7 +19,7 @@ pub struct Level {
 }
 
 impl Level {
-    /// The residual after every step tried, N or m: sums of squares relative to the final one give it.
+    /// The residual after every step tried, N or m, from the sums of squares relative to the final one.
     pub fn course(&self) -> impl Iterator<Item = f64> + '_ {
         let last = self.iterations.last().map_or(1.0, |step| step.sum_of_squares);
         let share = move |squares: f64| if last > 0.0 { (squares / last).sqrt() } else { 1.0 };

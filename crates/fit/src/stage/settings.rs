@@ -202,7 +202,11 @@ impl Settings {
             return setting("points", self.points.to_string(), "1 to 50 control points");
         }
         if !self.robust.is_none_or(|limit| limit > 0.0 && limit.is_finite()) {
-            return setting("robust", format!("{:?}", self.robust), "a positive multiple of the noise, as 3");
+            return setting(
+                "robust",
+                format!("{:?}", self.robust),
+                "a positive multiple of the noise, e.g. 3",
+            );
         }
         if !(self.start_factor > 0.0 && self.start_factor.is_finite()) {
             return setting("start_factor", self.start_factor.to_string(), "a positive number");

@@ -134,7 +134,7 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
         return Err(unfit(
             replicas,
             format!("an extension or a shear angle of {extension:.2e}, and {name} of {range:.2e}"),
-            "a pull along the yarns that the test's kind names: check kind, and vt in mesh.obj",
+            "a pull along the yarns of the test's kind: check kind, and vt in mesh.obj",
         ));
     }
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
@@ -143,8 +143,8 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
     if !(mean > 0.0) {
         return Err(unfit(
             replicas,
-            format!("clip forces that make a stiffness of {mean:.3e} N/m"),
-            "the force that the cords exert on each clip, outward where the specimen is stretched: its sign, or force_direction",
+            format!("clip forces that give a stiffness of {mean:.3e} N/m"),
+            "the force of the cords on each clip, outward under stretch: check its sign, or force_direction",
         ));
     }
     Ok(mean)
@@ -202,7 +202,7 @@ fn from_shapes(plan: &Plan, replicas: &[Replica], given: Option<f64>) -> Result<
         unfit(
             replicas,
             "no overhang that sags under its weight".into(),
-            "gravity_m_s2 that is not zero, and cloth that hangs over the edge",
+            "nonzero gravity_m_s2, and cloth that hangs over the edge",
         )
     })
 }

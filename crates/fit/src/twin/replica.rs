@@ -405,7 +405,7 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
         &sequence.name,
         format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
         format!(
-            "cells at most 2.4 times as long as wide: nodes by the specimen's sides, as {columns}x{rows}"
+            "cells at most 2.4 times as long as wide: nodes in proportion to the specimen's sides, e.g. {columns}x{rows}"
         ),
     ))
 }

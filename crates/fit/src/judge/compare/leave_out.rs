@@ -69,7 +69,7 @@ fn one(
     result
 }
 
-/// Predicts one sequence from a fit of the rest; returns the components that the fit does not know, too.
+/// Predicts one sequence from a fit of the rest; also returns the components that the fit does not know.
 fn predicted(
     rest: &MeasurementSet,
     alone: &MeasurementSet,

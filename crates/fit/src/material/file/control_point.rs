@@ -67,7 +67,7 @@ impl Keys {
             true => Ok(()),
             false => Err(
                 "a contradiction, expected strain three times curvature_per_m and rigidity_n_m three times \
-                          stiffness_n_m (leave curvature_per_m and rigidity_n_m out after an edit)",
+                          stiffness_n_m (after an edit, omit curvature_per_m and rigidity_n_m)",
             ),
         }
     }

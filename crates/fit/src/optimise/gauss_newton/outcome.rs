@@ -87,10 +87,7 @@ impl fmt::Display for Status {
             }
             Self::SmallStep { tolerance } => write!(f, "the parameters moved by less than {tolerance:.0e}"),
             Self::Noise { promised } => {
-                write!(
-                    f,
-                    "what is left to gain, a share of {promised:.0e}, is below the noise of the residual"
-                )
+                write!(f, "the possible gain, a share of {promised:.0e}, is below the noise of the residual")
             }
             Self::Stalled { reason: None } => write!(f, "no step, however short, lowered the residual"),
             Self::Stalled { reason: Some(reason) } => {

@@ -2,16 +2,15 @@
 //! step.
 //!
 //! The region is an ellipsoid, imposed by damping: minimise ‖J p − r‖² + μ ‖D p‖² with the smallest sufficient μ. A
-//! box would only add to the inequalities, but it lets unknowns that the data hardly see run to its corners for a
-//! negligible gain, and fails on NIST's MGH17 for that reason from every radius tried.
+//! box would join the inequalities at no cost, but it lets unknowns that the data hardly see run to its corners for a
+//! negligible gain, and therefore fails on NIST's MGH17 from every radius tried.
 
 use super::problem::Domain;
 use super::state::State;
 use crate::optimise::least_squares::{Active, LeastSquares, Smoothing, Solution, Status, Triangle};
 use nalgebra::{DMatrix, DVector};
 
-/// Tolerance on the step's length: up to this factor longer than the radius, or shorter; more precision gains
-/// nothing.
+/// A step may exceed the radius by this factor, or fall short by its inverse; more precision gains nothing.
 const WIDER: f64 = 1.1;
 
 /// Maximum size of the bend, as a share of the step.

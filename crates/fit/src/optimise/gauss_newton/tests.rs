@@ -354,7 +354,7 @@ fn jacobians_on_demand_change_nothing_but_the_count() {
     assert!(later.evaluations > at_once.evaluations);
 }
 
-/// A misfit of 100, larger by 1e-7 at every evaluation but the first, beside k − 1.
+/// A misfit of 100, larger by 1e-7 of it away from the first evaluated point, beside 1 − k.
 struct Rough {
     first: Option<f64>,
 }

@@ -59,7 +59,7 @@ pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) 
         let tight = (0..count).filter(|&row| problem.slack(row, &point) <= 1e-12 * problem.size(row, &point));
         multipliers = pushes(problem, &tight.collect::<Vec<_>>(), &gradient, rounding);
         let downhill = rows.tr_mul(&multipliers) - &gradient;
-        // Each return to this line has lower cost; otherwise only rounding is left.
+        // Every pass must lower the cost; otherwise only rounding is left.
         let cost = (&problem.matrix * &point - &problem.target).norm_squared();
         if downhill.amax() <= rounding || cost >= lowest {
             break;

@@ -54,7 +54,7 @@ impl Grip {
             Some(clip) => Err(Error::geometry(
                 &sequence.name,
                 format!("clip {} holds no node of its own", sequence.clips[clip].name),
-                "clips that do not overlap, on the specimen",
+                "clips on the specimen, without overlap",
             )),
             None => Ok(grip),
         }
@@ -77,8 +77,8 @@ impl Grip {
                     sequence.clips[clip].name,
                     apart(&sequence.frames[frame])
                 ),
-                "clips that do not overlap (they grip what lies within half a simulation cell), and poses that map rest points to where \
-                 they are, x = R(q) x_rest + t",
+                "clips that do not overlap (they grip nodes within half a simulation cell), and poses that map rest points to \
+                 their positions, x = R(q) x_rest + t",
             ));
         }
         let pair = [other, clip];
@@ -90,7 +90,7 @@ impl Grip {
         Ok(())
     }
 
-    /// Position of a held node in a frame, in the specimen's frame of reference.
+    /// Position of a held node in a frame of the sequence, in specimen coordinates.
     pub(super) fn place(&self, specimen: &Specimen, frame: &Frame, node: usize) -> Vector3<f64> {
         match self.group_of[node] {
             Some(group) => {

@@ -89,11 +89,7 @@ impl Lines {
         hold: TableHold,
     ) -> Result<Self> {
         let Some(table) = sequence.table else {
-            return Err(Error::geometry(
-                &sequence.name,
-                "no table",
-                "a [table] in test.toml: where its edge is",
-            ));
+            return Err(Error::geometry(&sequence.name, "no table", "a [table] in test.toml, with its edge"));
         };
         let outward = specimen.turn(&Vector3::from(table.outward)).normalize();
         let edge = specimen.place(&Vector3::from(table.edge_point_m));
@@ -119,7 +115,7 @@ impl Lines {
             return Err(Error::geometry(
                 &sequence.name,
                 "a sheet whose sides are not along the table's edge, or no shape at all",
-                "shapes (positions.npy) of a sheet pushed straight over the edge, and outward and edge_direction as they are",
+                "shapes (positions.npy) of a sheet pushed straight over the edge, and the true outward and edge_direction",
             ));
         }
         let mut nodes = if along == 0 { columns } else { rows };

@@ -55,7 +55,7 @@ fn a_minimum_is_found_to_the_noise_of_the_residual_and_no_closer() {
     let outcome = fit(evaluate, 5.0, &Options::default()).unwrap();
     let said = outcome.status.to_string();
     assert!(matches!(outcome.status, Status::Noise { promised } if promised < 1e-9), "{said}");
-    assert!(said.starts_with("what is left to gain, a share of "), "{said}");
+    assert!(said.starts_with("the possible gain, a share of "), "{said}");
     assert!(outcome.status.converged() && (outcome.point[0] - 2.0).abs() < 1e-4, "{}", outcome.point);
 }
 

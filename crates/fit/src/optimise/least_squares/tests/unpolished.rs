@@ -49,7 +49,7 @@ fn what_has_no_solution_has_none_unpolished() {
 fn every_status_is_said_in_words() {
     let said = |status: Status| status.to_string();
     assert_eq!(said(Status::Optimal), "solved");
-    let inaccurate = "the conditions of optimality hold only to 2.0e-7, wanted 1e-10";
+    let inaccurate = "the optimality conditions hold only to 2.0e-7, not to 1e-10";
     assert_eq!(said(Status::Inaccurate { kkt: 2e-7 }), inaccurate);
     assert_eq!(said(Status::Infeasible), "the inequalities contradict one another");
     assert_eq!(said(Status::NotFinite), "the least-squares problem contains NaN or infinite numbers");
