@@ -167,7 +167,10 @@ mod tests {
         );
         refused(&with(SHEAR).replace("\"cloth\"", "\" \""), 1, "the material's name");
         let error = read(&with("[curves]\n")).unwrap_err().to_string();
-        assert!(error.ends_with("curves: found nothing, expected one component's curve at least"), "{error}");
+        assert!(
+            error.ends_with("curves: found nothing, expected the curve of at least one component"),
+            "{error}"
+        );
         let error = read(HEAD).unwrap_err().to_string();
         assert!(error.contains("curves"), "{error}");
     }

@@ -13,7 +13,7 @@ use cloth_data::store::write_file;
 use cloth_sim::material::Model;
 use std::path::{Path, PathBuf};
 
-/// Rejects an output folder that contains anything but a former result.
+/// Rejects an output folder that contains anything but an earlier result.
 ///
 /// # Errors
 /// A file; a folder with other content than the result of a fit (one model, or one folder per model), comparison,

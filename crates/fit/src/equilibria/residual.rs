@@ -178,9 +178,9 @@ impl Residuals for Simulation<'_> {
 const ROUNDING: f64 = 1e-12;
 const UNMOVED: f64 = 1e-9;
 
-/// The Jacobian with zero columns for control values that no frame sees. Rounding leaves such columns slightly off
-/// zero, and the solver, which scales columns to unit length, would count them as seen. Control values share one unit
-/// and act through the same equilibrium, so column lengths can be compared.
+/// The Jacobian with zero columns for control values that no frame sees. Rounding leaves such columns slightly
+/// nonzero, and the solver, which scales columns to unit length, would count them as seen. Control values share one
+/// unit and act through the same equilibrium, so column lengths can be compared.
 pub(crate) fn without_rounding(mut jacobian: DMatrix<f64>) -> DMatrix<f64> {
     let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
     let rounding = jacobian.column_iter_mut().filter(|column| column.norm() <= ROUNDING * longest);

@@ -31,7 +31,7 @@ pub struct Settled<'s> {
     pub replica: &'s Replica,
     /// The frame.
     pub frame: &'s ReplicaFrame,
-    /// Its equilibrium, 3 stacked coordinates a node, m.
+    /// Its equilibrium, 3 stacked coordinates per node, m.
     pub x: &'s [f64],
     /// The solve met an unstable equilibrium and left it: the frame may have several equilibria.
     pub multi_stable: bool,

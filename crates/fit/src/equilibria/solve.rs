@@ -201,7 +201,7 @@ fn predicted(state: &State, cloth: &Cloth, change: Option<&DVector<f64>>) -> Vec
     x
 }
 
-/// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 entries a node.
+/// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 entries per node.
 pub(crate) fn parameter_columns(
     cloth: &Cloth,
     curves: &Curves,

@@ -1,4 +1,5 @@
-//! Errors of held positions. These are measured too, and each error moves the whole free cloth, hence many residuals.
+//! Whitens residuals for errors of held positions: these are measured too, and each error moves the whole free cloth,
+//! hence many residuals.
 //!
 //! ```text
 //! residual r = noise + N δ       N = ∂x/∂(place of a held line) = −K⁻¹ K_h,   δ ~ σ_h

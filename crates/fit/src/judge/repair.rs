@@ -59,7 +59,8 @@ impl fmt::Display for Unrepairable {
         match self {
             Self::Magnitude(finding) => write!(
                 f,
-                "a largest stiffness of {:.3e}, where {} {:.0e} is plausible: probably another unit, which a repair cannot correct",
+                "a largest stiffness of {:.3e}, where {} {:.0e} is plausible: probably another unit, which a repair \
+                 cannot correct",
                 finding.value,
                 if finding.value < finding.limit { "at least" } else { "at most" },
                 finding.limit

@@ -64,7 +64,7 @@ pub struct MeasureRow {
     pub measured: f64,
     /// Simulated.
     pub simulated: f64,
-    /// The frame has several equilibria.
+    /// True if the frame has several equilibria.
     pub multi_stable: bool,
 }
 

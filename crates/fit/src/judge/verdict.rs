@@ -197,16 +197,16 @@ fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
     let bends = names(&Component::is_bending);
     if !bends.is_empty() {
         let said = format!(
-            "the sheet may buckle and its bending is assumed ({bends}): the band includes the case of a flat sheet; bending \
-             tests (fit) would narrow it"
+            "the sheet may buckle and its bending is assumed ({bends}): the band includes the case of a flat \
+             sheet; bending tests (fit) would narrow it"
         );
         return Some((Grade::Amber, said));
     }
     let stretches = names(&Component::is_stretch);
     (!stretches.is_empty()).then(|| {
         let said = format!(
-            "nearly inextensible yarns are assumed ({stretches}): if they stretch, the fitted shear is too soft; stretch \
-             tests would settle it"
+            "nearly inextensible yarns are assumed ({stretches}): if they stretch, the fitted shear is too \
+             soft; stretch tests would settle it"
         );
         (Grade::Amber, said)
     })

@@ -414,7 +414,7 @@ mod tests {
             "\"strain\": 9.0",
             "curves.stretch-weft.control_points[0]: found the first strain must be zero",
         );
-        let unit = "stiffness_n_m, where stiffness_n_per_m belongs";
+        let unit = "stiffness_n_m instead of stiffness_n_per_m";
         refused(
             "\"stiffness_n_per_m\"",
             "\"stiffness_n_m\"",

@@ -57,7 +57,7 @@ impl HandWritten {
             return Err(file.invalid("areal_density_kg_m2", density.to_string(), expected));
         }
         if curves.is_empty() {
-            return Err(Error::input(path, None, "curves", "nothing", "one component's curve at least"));
+            return Err(Error::input(path, None, "curves", "nothing", "the curve of at least one component"));
         }
         let curves = curves.iter().map(|(&component, points)| {
             let negative = model.negative_strain(component, *compression);

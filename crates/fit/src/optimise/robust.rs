@@ -25,8 +25,8 @@ impl Robust {
         (residual * share, 1.0 / (root * share))
     }
 
-    /// √(ρ″/2) over dr̃/dr for a transformed residual r̃. The Jacobian's row times this, with the residual divided by
-    /// it, has the slope of Σ r̃² and its full curvature in r.
+    /// √(ρ″/2) over dr̃/dr for a transformed residual r̃. A row of the Jacobian times this, with its residual over
+    /// this, has the slope of Σ r̃² and its full curvature in r.
     pub fn curvature(&self, bent: f64) -> f64 {
         // ρ = r̃² gives √(1 + (r/c)²) without r.
         let root = 1.0 + 0.5 * (bent / self.limit).powi(2);

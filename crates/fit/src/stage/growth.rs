@@ -39,8 +39,8 @@ pub struct Growth {
     pub stopped: String,
 }
 
-/// If doubling a constant stiffness changes less than this share of the residual, more points would fit nothing:
-/// ring-2 springs that depend on softer yarns.
+/// If doubling a constant stiffness changes less than this share of the residual, more points would be undetermined,
+/// as for ring-2 springs that depend on softer yarns.
 const FELT: f64 = 0.1;
 
 /// Fits with an increasing number of control points, starting with the simulation's curve.
@@ -81,8 +81,7 @@ pub fn grow(
         let all = points >= most;
         let noise = variance_left(&outcome.residual, points, simulation.noise_is_known());
         let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
-        // Points that the data do not separate fit noise: their gain must exceed the expected gain by chance of that
-        // many.
+        // Points that the data do not separate fit noise: their gain must exceed that of as many points by chance.
         let told_apart = Covariance::rank_of(&outcome.jacobian) == points;
         let by_chance = |added: usize| 0.5 * added as f64 * SIGNIFICANT * noise;
         let pays = |before: f64, after: f64, added: usize| {

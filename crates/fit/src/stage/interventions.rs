@@ -49,7 +49,7 @@ pub struct Interventions {
     /// Frames that continuation from the previous frame did not reach; they started from their measured shape.
     #[serde(skip_serializing_if = "is_zero")]
     pub frames_not_followed: usize,
-    /// Rejected steps of the fit: too little decrease, or no evaluation.
+    /// Rejected steps of the fit: too little decrease, or a point that could not be evaluated.
     #[serde(skip_serializing_if = "is_zero")]
     pub steps_rejected: usize,
     /// Steps of the fit whose linearised problem was not solved to full accuracy.

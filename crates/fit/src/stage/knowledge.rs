@@ -137,7 +137,7 @@ mod tests {
         let one = DMatrix::from_element(1, 1, 4.0);
         knowledge.learn(&[a], &curve(10.0), &one, &[], &DMatrix::zeros(1, 0));
         assert_eq!(knowledge.groups(&[a, b]), vec![vec![a]]);
-        // b has −½ of a's error, and an error of 1 of its own.
+        // b's error is −½ of a's, plus an independent one of 1.
         let gain = DMatrix::from_element(1, 1, 0.5);
         let covariance = DMatrix::from_element(1, 1, 1.0 + 0.25 * 4.0);
         knowledge.learn(&[b], &curve(3.0), &covariance, &[a, b], &gain);

@@ -133,7 +133,7 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
     if range < 0.1 * extension {
         return Err(unfit(
             replicas,
-            format!("an extension or a shear angle of {extension:.2e}, and {name} of {range:.2e}"),
+            format!("a {name} strain of only {range:.2e} at an extension or shear angle of {extension:.2e}"),
             "a pull along the yarns of the test's kind: check kind, and vt in mesh.obj",
         ));
     }

@@ -230,7 +230,7 @@ impl Replica {
         !rolls || bends(component) || !Component::ALL.into_iter().any(bends)
     }
 
-    /// The sheet at rest, 3 stacked coordinates a node, m.
+    /// The sheet at rest, 3 stacked coordinates per node, m.
     pub fn rest(&self) -> Vec<f64> {
         self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
     }
@@ -405,7 +405,8 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
         &sequence.name,
         format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
         format!(
-            "cells at most 2.4 times as long as wide: nodes in proportion to the specimen's sides, e.g. {columns}x{rows}"
+            "cells at most 2.4 times as long as wide: nodes in proportion to the specimen's sides, e.g. \
+             {columns}x{rows}"
         ),
     ))
 }

@@ -130,8 +130,8 @@ impl CurveEntry {
         let points = &self.control_points;
         if let Some(point) = points.iter().position(|point| point.unit != Unit::of(model, component)) {
             let reason = match Unit::of(model, component) {
-                Unit::NewtonPerMetre => "stiffness_n_m, where stiffness_n_per_m belongs",
-                Unit::NewtonMetre => "stiffness_n_per_m, where stiffness_n_m belongs",
+                Unit::NewtonPerMetre => "stiffness_n_m instead of stiffness_n_per_m",
+                Unit::NewtonMetre => "stiffness_n_per_m instead of stiffness_n_m",
             };
             return Err((point, reason.into()));
         }

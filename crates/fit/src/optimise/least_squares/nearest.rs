@@ -22,7 +22,11 @@ impl LeastSquares {
     /// On inconsistent shapes.
     pub fn solve_unpolished(&self) -> Option<DVector<f64>> {
         let (m, n) = self.jacobian.shape();
-        assert_eq!((m, n), (self.target.len(), self.lower.len()), "a row a target, a column an unknown");
+        assert_eq!(
+            (m, n),
+            (self.target.len(), self.lower.len()),
+            "a row for every target, a column for every unknown"
+        );
         if !self.is_finite() {
             return None;
         }

@@ -77,8 +77,8 @@ impl Grip {
                     sequence.clips[clip].name,
                     apart(&sequence.frames[frame])
                 ),
-                "clips that do not overlap (they grip nodes within half a simulation cell), and poses that map rest points to \
-                 their positions, x = R(q) x_rest + t",
+                "clips that do not overlap (they grip nodes within half a simulation cell), and poses that map \
+                 rest points to their positions, x = R(q) x_rest + t",
             ));
         }
         let pair = [other, clip];

@@ -115,7 +115,8 @@ impl Lines {
             return Err(Error::geometry(
                 &sequence.name,
                 "a sheet whose sides are not along the table's edge, or no shape at all",
-                "shapes (positions.npy) of a sheet pushed straight over the edge, and the true outward and edge_direction",
+                "shapes (positions.npy) of a sheet pushed straight over the edge, and the true outward and \
+                 edge_direction",
             ));
         }
         let mut nodes = if along == 0 { columns } else { rows };
