@@ -1,8 +1,8 @@
-//! What a whole fit costs: `cargo bench -p cloth-fit`, on quiet cores; `-- small` leaves out the finer grids.
+//! Cost of a whole fit: `cargo bench -p cloth-fit`, on idle cores; `-- small` skips the finer grids.
 //!
-//! Six sequences of 50 frames of a known denim, with the noise of the instruments, up to five control points, six curves:
-//! wall time and factorisations by stage, on one thread and on all; the same as published; the parameter Jacobian by
-//! sensitivities and by finite differences.
+//! Six sequences of 50 frames of a known denim with instrument noise, up to five control points, six curves. Prints
+//! wall time and factorisations per stage, on one thread and on all; the same for the published method; the parameter
+//! Jacobian by sensitivities and by finite differences.
 #![allow(clippy::print_stdout)]
 
 use cloth_data::frame::{Kind, MeasurementSet};
@@ -46,7 +46,7 @@ fn main() -> Result<()> {
     against_published(&set, &Settings { nodes: Some([25; 2]), ..Settings::default() }, cores)
 }
 
-/// The published method and ours on every fifth frame: it needs minutes for these.
+/// The published method and ours on every fifth frame: the published one takes minutes even then.
 fn against_published(set: &MeasurementSet, settings: &Settings, cores: usize) -> Result<()> {
     let mut thin = set.clone();
     for sequence in &mut thin.sequences {
@@ -78,7 +78,7 @@ fn measured() -> Result<MeasurementSet> {
     Ok(set)
 }
 
-/// Fits everything on so many threads; with the seconds that takes.
+/// Fits everything on the given number of threads; returns the report and the seconds taken.
 fn fit(set: &MeasurementSet, settings: &Settings, threads: usize) -> Result<(FitReport, f64)> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let clock = Instant::now();
@@ -88,7 +88,7 @@ fn fit(set: &MeasurementSet, settings: &Settings, threads: usize) -> Result<(Fit
     Ok((report, clock.elapsed().as_secs_f64()))
 }
 
-/// A table of the stages.
+/// Prints a table of the stages.
 fn stages(set: &MeasurementSet, settings: &Settings, report: &FitReport, cores: usize) -> Result<()> {
     println!(
         "{:<14}{:>5}{:>12}{:>12}{:>16}{:>10}{:>9}{:>12}{:>13}",
@@ -129,9 +129,9 @@ fn plan(stage: &StageReport) -> Plan {
     }
 }
 
-/// What the equilibria of a stage are made with.
+/// Curves for the equilibria of a stage.
 fn curves(plan: &Plan, known: &Curves) -> Curves {
-    // What nobody observed is as stiff as something that was: only the time counts here.
+    // An unobserved curve borrows another one of its kind: only the time counts here.
     let any = |component: Component| {
         known
             .components()
@@ -143,7 +143,7 @@ fn curves(plan: &Plan, known: &Curves) -> Curves {
     plan.components.iter().filter_map(curve).collect()
 }
 
-/// How long one factorisation of a stage's last cloth takes, s.
+/// Time of one factorisation of a stage's last cloth, s.
 fn factor_seconds(
     set: &MeasurementSet,
     settings: &Settings,
@@ -167,7 +167,7 @@ fn factor_seconds(
     Ok(again - assembly_seconds(cloth, &curves, &x))
 }
 
-/// One gradient and one Hessian, s.
+/// Time of one gradient and one Hessian, s.
 fn assembly_seconds(cloth: &Cloth, curves: &Curves, x: &[f64]) -> f64 {
     let (mut gradient, mut values) = (vec![0.0; x.len()], Vec::new());
     let mut scale = ForceScale::new(cloth.nodes());
@@ -177,7 +177,8 @@ fn assembly_seconds(cloth: &Cloth, curves: &Curves, x: &[f64]) -> f64 {
     })
 }
 
-/// The parameter Jacobian of a buckled picture frame: by the equilibrium's own factor, and by new equilibria.
+/// The parameter Jacobian of a buckled picture frame, from the equilibrium's own factorisation and from new
+/// equilibria.
 fn jacobian(set: &MeasurementSet, settings: &Settings, report: &FitReport) -> Result<()> {
     let plan = shear::plan(2);
     let replicas = plan.replicas(set, settings)?;
@@ -233,7 +234,7 @@ fn jacobian(set: &MeasurementSet, settings: &Settings, report: &FitReport) -> Re
     Ok(())
 }
 
-/// How far the published method's curves are from ours, in half widths of our bands.
+/// Prints the distance of the published method's curves from ours, in half-widths of our bands.
 fn compare(ours: &FitReport, theirs: &FitReport) {
     println!("{:<14}{:>24}{:>22}", "curve", "largest difference", "in half bands");
     for component in Component::ALL {
@@ -242,7 +243,7 @@ fn compare(ours: &FitReport, theirs: &FitReport) {
         };
         let largest = stage.curve.samples.last().map_or(0.0, |sample| sample.stress);
         let own = &stage.curve.curve;
-        // Bending: what is a curvature in the file is three times that to a hinge.
+        // Bending: a hinge's strain is three times the curvature in the file.
         let unit =
             if component.is_bending() { cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
         let (mut apart, mut bands): (f64, f64) = (0.0, 0.0);
@@ -259,7 +260,7 @@ fn compare(ours: &FitReport, theirs: &FitReport) {
     println!();
 }
 
-/// The fastest of several runs, s: on a shared machine the others tell of the neighbours.
+/// The fastest of several runs, s: on a shared machine the slower ones measure the load.
 fn fastest(mut task: impl FnMut()) -> f64 {
     let mut once = || {
         let clock = Instant::now();
@@ -271,7 +272,7 @@ fn fastest(mut task: impl FnMut()) -> f64 {
     (0..repeats).map(|_| once()).fold(first, f64::min)
 }
 
-/// The most memory that was in use, as Linux tells it.
+/// Peak memory, as Linux reports it.
 fn memory() -> String {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -1,4 +1,4 @@
-//! All frames of one stage in equilibrium under trial curves: residuals of clip forces or of positions, and their
+//! Equilibria of all frames of a stage under trial curves, with the residuals of clip forces or positions and their
 //! sensitivities.
 //!
 //! ```text
@@ -7,11 +7,11 @@
 //! sensitivity      dx/dk = −K⁻¹ ∂g/∂k        dF_c/dk = ∂F_c/∂k + (∂F_c/∂x) dx/dk
 //! ```
 //!
-//! K is the true stiffness matrix at the equilibrium, whose factorisation the equilibrium leaves behind; all control
-//! points are solved for at once. Frames are independent: they run in parallel and are collected in order.
+//! K is the true stiffness matrix at the equilibrium; its factorisation is reused, and all control points are solved
+//! for at once. Frames are independent: they run in parallel and are collected in order.
 //!
-//! Source: Miguel et al. 2012, eqs. 7–9; without the μI that they keep in K, unless equilibria are sought by
-//! Levenberg–Marquardt, too (docs/model.md).
+//! Source: Miguel et al. 2012, eqs. 7–9, without the μI that they keep in K, except where equilibria are found by
+//! Levenberg–Marquardt (docs/model.md).
 
 mod meter;
 mod observation;

@@ -1,4 +1,5 @@
-//! Judgement of curves: against their measurements, against tests that no fit saw, against each other; and their repair.
+//! Judges curves against their measurements, against tests outside the fit and against each other; repairs unstable
+//! curves.
 
 pub mod compare;
 pub mod prediction;

@@ -1,10 +1,10 @@
-//! From measured fabric to stress–strain curves.
+//! Fits stress–strain curves to measurements of fabric.
 //!
 //! # The problem
 //!
-//! A sample is stretched, sheared and bent; what holds it, the forces on that, and mostly its shape are measured in every
-//! frame. Wanted are the control values k of a stiffness curve for which the simulated cloth, in equilibrium between the
-//! same clips or on the same table, behaves alike:
+//! A sample is stretched, sheared and bent; every frame records its clips or table, the forces on them, and usually
+//! its shape. A fit finds the control values k of a stiffness curve for which the simulated cloth, in equilibrium
+//! between the same clips or on the same table, reproduces the measurement:
 //!
 //! ```text
 //! minimise over k    Σ_frames |F_c(x, k) − F̃_c|²/σ_F²                     stretch, shear: forces on the clips
@@ -13,26 +13,27 @@
 //!                    dσ/dε ≥ κ for every strain                            a curve that is stable to simulate
 //! ```
 //!
-//! One curve at a time, the others known: stretch, then shear, then bending, then shear and bending once more.
+//! The curves are fitted one at a time, with the others known: stretch, then shear, then bending, then shear and
+//! bending again.
 //!
-//! Source: Miguel et al. 2012, eq. 6 and §5.2. What differs, and every other equation: docs/model.md.
+//! Source: Miguel et al. 2012, eq. 6 and §5.2. Differences, and all other equations: docs/model.md.
 //!
-//! # From measurement to curve
+//! # Modules
 //!
 //! | module | role |
 //! |---|---|
-//! | [`cloth_data`] | what was measured, and where it contradicts itself |
-//! | [`twin`] | a simulated replica of each sequence: grid, cloth, what holds it, its frames |
+//! | [`cloth_data`] | measurements, and contradictions within them |
+//! | [`twin`] | a simulated replica of each sequence: grid, cloth, clips or table, frames |
 //! | [`equilibria`] | equilibria of all frames, residuals, sensitivities |
-//! | [`optimise`] | a linearised step under constraints, the outer loop, outliers, uncertainty |
-//! | [`stage`], [`incremental`] | one curve, from set to report; all of them in order |
-//! | [`judge`] | how far to trust a curve; tests that no fit saw; models side by side; what would spoil a simulation |
-//! | [`material`] | what a simulation must know of a fabric, from a fit or from hand |
-//! | [`result`] | what was found, as files |
+//! | [`optimise`] | linearised step under constraints, outer loop, outliers, uncertainty |
+//! | [`stage`], [`incremental`] | the fit of one curve, from set to report; all stages in order |
+//! | [`judge`] | verdict on a curve; validation; comparison of models; repair of unstable curves |
+//! | [`material`] | material for a simulation, fitted or written by hand |
+//! | [`result`] | result files |
 //!
 //! # Example
 //!
-//! A known cloth is measured on the virtual rig; its curves come back and go into a file.
+//! The virtual rig measures a known cloth; the fit recovers its curves and writes them to a file.
 //!
 //! ```
 //! use cloth_data::frame::Kind;
@@ -48,7 +49,7 @@
 //! let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
 //! let set = Rig { sequences, nodes: [13, 13], measured: [5, 5], ..Rig::default() }.measure(&fabric)?;
 //!
-//! // All stages: those that the set does not show are passed over.
+//! // All stages; those without a sequence in the set are skipped.
 //! let settings = Settings { nodes: Some([7, 7]), ..Settings::default() };
 //! let report = incremental::fit(&set, &Stage::ALL, &Knowledge::default(), &settings, &mut Watch::default())?;
 //! assert!(report.converged() && report.stages.len() == 2);

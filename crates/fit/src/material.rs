@@ -1,4 +1,4 @@
-//! A material to simulate: that of a fit, a known fabric, or one written by hand.
+//! A material to simulate: from a fit, from a known fabric, or written by hand.
 
 pub mod check;
 pub mod file;
@@ -13,26 +13,26 @@ use cloth_sim::material::{Component, Compression, Curves, Model};
 use hand_written::HandWritten;
 use std::path::Path;
 
-/// What a simulation must know of a fabric.
+/// A fabric as a simulation needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Its name.
+    /// Name of the fabric.
     pub name: String,
     /// kg/m².
     pub areal_density: f64,
-    /// The model whose strains the curves are over.
+    /// The model of the curves' strain measures.
     pub model: Model,
-    /// What weft and warp do under compression.
+    /// Behaviour of weft and warp under compression.
     pub compression: Compression,
     /// The curves; a component without one stores no energy.
     pub curves: Curves,
 }
 
 impl Material {
-    /// Reads `material.json` of a fit, a fabric of the virtual rig, or a material written by hand: docs/formats.md.
+    /// Reads `material.json` of a fit, a fabric of the virtual rig, or a hand-written material: docs/formats.md.
     ///
     /// # Errors
-    /// A file that is none of these, with line and key; curves that cannot be.
+    /// A file that is none of these, with line and key; invalid curves.
     pub fn read(path: &Path) -> Result<Self> {
         if path.extension().is_some_and(|ending| ending == "json") {
             let file = MaterialFile::read(path)?;
@@ -47,7 +47,7 @@ impl Material {
             });
         }
         let file = TomlFile::read(path)?;
-        // Only the rig must know how far a test shall pull.
+        // Only a fabric of the rig states the largest extension of its tests.
         if file.has("largest_extension") {
             let fabric = KnownFabric::of(&file)?;
             let curves = fabric.curves()?;
@@ -68,7 +68,7 @@ impl Material {
     /// The same material with another rule for compression.
     ///
     /// # Errors
-    /// None that the curves did not have before.
+    /// None, if the material's curves are valid.
     pub fn with_compression(self, compression: Compression) -> Result<Self> {
         let Self { name, areal_density, model, curves, .. } = self;
         let curve = |component: Component| {
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!((cloth.model, cloth.compression), (Model::Stvk, Compression::ZeroStrain));
         let of = |component| cloth.curves.get(component);
         assert_eq!(of(Component::StretchWeft).unwrap().stiffnesses(), [800.0]);
-        // Three times the curvature is the hinges' strain, a third of the rigidity their stiffness.
+        // The hinges' strain is three times the curvature, their stiffness a third of the rigidity.
         let near = |found: &[f64], expected: &[f64]| {
             found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-18)
         };
@@ -167,7 +167,10 @@ mod tests {
         );
         refused(&with(SHEAR).replace("\"cloth\"", "\" \""), 1, "the material's name");
         let error = read(&with("[curves]\n")).unwrap_err().to_string();
-        assert!(error.ends_with("curves: found nothing, expected one component's curve at least"), "{error}");
+        assert!(
+            error.ends_with("curves: found nothing, expected the curve of at least one component"),
+            "{error}"
+        );
         let error = read(HEAD).unwrap_err().to_string();
         assert!(error.contains("curves"), "{error}");
     }

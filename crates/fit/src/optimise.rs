@@ -1,4 +1,4 @@
-//! Nonlinear least squares under constraints, and how sure its result is.
+//! Nonlinear least squares under constraints, and the uncertainty of its result.
 
 pub mod gauss_newton;
 pub mod least_squares;

@@ -1,4 +1,4 @@
-//! The folders that a fit and a validation write: tables, and a JSON file with all there is to say.
+//! Result folders of fits and validations: tables, and a JSON file with the complete result.
 
 mod tables;
 mod validation;
@@ -13,11 +13,11 @@ use cloth_data::store::write_file;
 use cloth_sim::material::Model;
 use std::path::{Path, PathBuf};
 
-/// Refuses an output folder that holds something other than a former result.
+/// Rejects an output folder that contains anything but an earlier result.
 ///
 /// # Errors
-/// A file, or a folder with anything in it but what a fit writes, of one model or a folder each of several, or what a
-/// comparison, a validation, a study or a simulation writes. Hidden files do not count.
+/// A file; a folder with other content than the result of a fit (one model, or one folder per model), comparison,
+/// validation, study or simulation. Hidden files are ignored.
 pub fn check_output(folder: &Path) -> Result<()> {
     let refuse = |found: String| {
         Err(Error::input(
@@ -25,7 +25,7 @@ pub fn check_output(folder: &Path) -> Result<()> {
             None,
             "--out",
             found,
-            "a new or empty folder, or a former result, which is replaced",
+            "a new or empty folder, or an earlier result, which is replaced",
         ))
     };
     if !folder.exists() {
@@ -41,7 +41,7 @@ pub fn check_output(folder: &Path) -> Result<()> {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
         entries.filter(|path| !name(path).starts_with('.')).collect()
     };
-    // Nothing but what is written here: what stands beside it must not go with it.
+    // Accepts only files that this program writes: replacing the folder deletes all of its content.
     let holds = |folder: &Path, main: &str, all: &[&str]| {
         folder.join(main).is_file() && visible(folder).iter().all(|path| all.contains(&&name(path)[..]))
     };
@@ -57,40 +57,40 @@ pub fn check_output(folder: &Path) -> Result<()> {
         ("simulation.json", &SIMULATED),
     ];
     let is_other = others.iter().any(|(main, all)| holds(folder, main, all));
-    // Several models share a page.
+    // Several models share one report.
     let of_models =
         |entry: &PathBuf| is_model(entry) || ["report.json", "report.html"].contains(&&name(entry)[..]);
     let are_models = entries.iter().all(of_models) && (entries.is_empty() || entries.iter().any(is_model));
     if is_other || is_result(folder) || are_models {
         return Ok(());
     }
-    // What no fit writes says most.
+    // Prefers to name a file that no fit writes.
     let names: Vec<String> = entries.iter().map(|path| name(path)).collect();
     let other = names.iter().find(|name| !WRITTEN.contains(&&name[..])).or(names.first());
     refuse(format!("a folder with other things in it, such as {}", shown(other.map_or("", |name| name))))
 }
 
-/// What stands in a result folder.
+/// Files and folders of a fit.
 const WRITTEN: [&str; 7] =
     ["material.json", "curves", "plots", "residuals.csv", "forces.csv", "report.json", "report.html"];
 
-/// What stands in the folder of a [comparison](crate::judge::compare).
+/// Files and folders of a [comparison](crate::judge::compare).
 const COMPARED: [&str; 4] = ["compare.csv", "compare.json", "report.json", "report.html"];
 
-/// What stands in the folder of a [validation](crate::judge::validation).
+/// Files and folders of a [validation](crate::judge::validation).
 const VALIDATED: [&str; 5] = ["validation.json", "validation.csv", "measures.csv", "forces.csv", "plots"];
 
-/// What stands in the folder of a study.
+/// Files and folders of a study.
 const STUDIED: [&str; 4] = ["study.csv", "ablation.csv", "study.md", "plots"];
 
-/// What stands in the folder of a simulation.
+/// Files and folders of a simulation.
 const SIMULATED: [&str; 6] =
     ["simulation.json", "mesh.obj", "frames", "positions.npy", "energies.csv", "plots"];
 
-/// Writes the result of one model into a folder that exists. A curve that no frame sees has no file.
+/// Writes the result of one model into an existing folder. A curve that no frame observes has no file.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// Errors of the file system.
 pub fn write_result(folder: &Path, report: &FitReport, material: &MaterialFile) -> Result<()> {
     let curves = folder.join("curves");
     std::fs::create_dir_all(&curves).map_err(|source| Error::io(&curves, source))?;

@@ -1,4 +1,4 @@
-//! The simulated twin of a measured sequence.
+//! Simulated counterparts of measured sequences.
 
 mod placement;
 pub mod replica;

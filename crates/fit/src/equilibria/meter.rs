@@ -1,10 +1,10 @@
-//! What solves cost, and what helped them: counted, so that figures hold on any machine.
+//! Counts the cost of solves and their numerical interventions; counts do not depend on the machine.
 
 use cloth_sim::equilibrium::{Equilibrium, Limit, Remedies};
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the solves of a stage have cost.
+/// The cost of a stage's solves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Equilibria sought.
@@ -15,18 +15,18 @@ pub struct Counters {
     pub factorisations: usize,
     /// Equilibria whose imbalance was measured against rounding, not against the tolerance.
     pub by_rounding: usize,
-    /// What the solver did beside plain Newton steps.
+    /// Interventions of the solver beside plain Newton steps.
     pub remedies: Remedies,
-    /// Solves begun anew from a replica's own start.
+    /// Solves restarted from the replica's own start.
     pub begun_anew: usize,
     /// Solves that then took load steps from the flat sheet.
     pub in_load_steps: usize,
-    /// Frames that could not be followed from the one before, and started from their measured shape.
+    /// Frames that continuation from the previous frame did not reach; they start from their measured shape.
     pub not_followed: usize,
 }
 
 impl Counters {
-    /// What was spent since an earlier reading.
+    /// The counts since an earlier reading.
     pub fn since(&self, earlier: &Self) -> Self {
         Self {
             equilibria: self.equilibria - earlier.equilibria,
@@ -40,7 +40,7 @@ impl Counters {
         }
     }
 
-    /// One more solve.
+    /// Counts one more solve.
     pub fn add(&mut self, equilibrium: &Equilibrium) {
         self.equilibria += 1;
         self.iterations += equilibrium.iterations;
@@ -55,7 +55,7 @@ impl Counters {
 pub struct Meter(Mutex<Counters>);
 
 impl Meter {
-    /// What was spent so far.
+    /// The counts so far.
     pub fn read(&self) -> Counters {
         *self.counters()
     }
@@ -76,7 +76,7 @@ impl Meter {
         self.counters().not_followed += 1;
     }
 
-    /// Whole in every state, so that a panic elsewhere does not spoil it.
+    /// Ignores poisoning: the counters are valid in every state.
     fn counters(&self) -> MutexGuard<'_, Counters> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

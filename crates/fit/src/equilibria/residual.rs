@@ -1,4 +1,4 @@
-//! What a stage compares: residuals, in units of independent noise, and their derivatives.
+//! The residuals of a stage, in units of independent noise, and their derivatives.
 
 use super::simulation::Simulation;
 use super::state::FrameResult;
@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 impl Simulation<'_> {
-    /// Indices of residuals that follow one another: one force component of one clip through a sequence, or one coordinate
-    /// of one node.
+    /// Indices of consecutive residuals: one force component of one clip through a sequence, or one coordinate of one
+    /// node.
     pub fn tracks(&self) -> Vec<Vec<usize>> {
         let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
         let mut index = 0;
@@ -29,10 +29,10 @@ impl Simulation<'_> {
         tracks.into_values().collect()
     }
 
-    /// The derivative of everything that is compared with respect to the control values of other curves, in the order of
-    /// their groups; rows and units as those of an evaluation.
+    /// Derivative of all simulated values with respect to the control values of other curves, in the order of
+    /// `groups`; rows and units as in an evaluation.
     ///
-    /// * `groups` — components that share a curve, a group each
+    /// * `groups` — components that share a curve, one group each
     pub fn sensitivity_to(&self, groups: &[Vec<Component>]) -> DMatrix<f64> {
         let curves = self.curves();
         let results = self.solve_frames(&curves, groups, None);
@@ -51,7 +51,7 @@ impl Simulation<'_> {
         self.task.objective.noise(replica)
     }
 
-    /// What the residuals of a replica are divided by.
+    /// The unit that divides a replica's residuals.
     pub(super) fn scale(&self, replica: &Replica) -> f64 {
         self.noise(replica).filter(|_| self.noise_is_known()).unwrap_or(1.0)
     }
@@ -71,7 +71,7 @@ impl Simulation<'_> {
         sizes.get(sizes.len() / 2).map_or(0.0, |median| 1.4826 * median)
     }
 
-    /// A frame's residuals, and in further columns their derivatives, all in units of independent noise.
+    /// A frame's residuals, with their derivatives in further columns, all in units of independent noise.
     fn residual_rows(
         &self,
         replica: &Replica,
@@ -107,7 +107,7 @@ impl Residuals for Simulation<'_> {
         self.task.robust
     }
 
-    /// Residuals of all measurements, frame by frame, in units of the noise where that is known, else N or m.
+    /// Residuals of all measurements, frame by frame, in units of the noise where known, else N or m.
     fn evaluate(&mut self, point: &DVector<f64>, _jacobian: bool) -> Result<Evaluation, Infallible> {
         let failed = |reason: String| Ok(Evaluation::Failed { reason });
         let unknowns = match self.unknowns.with_values(point) {
@@ -144,18 +144,19 @@ impl Residuals for Simulation<'_> {
     }
 }
 
-/// Columns up to this share of the longest are rounding, and rows up to that.
+/// Columns, and rows, up to this share of the longest are rounding.
 const ROUNDING: f64 = 1e-12;
 const UNMOVED: f64 = 1e-9;
 
-/// A Jacobian by control values in which those that no frame sees have columns of zeros. What is left of such a column by
-/// rounding would count as seen, since what is solved scales columns to one length; but control values have one unit, and
-/// what a frame says of them comes through the same equilibrium.
+/// The Jacobian with zero columns for control values that no frame sees. Rounding leaves such columns slightly
+/// nonzero, and the solver, which scales columns to unit length, would count them as seen. Control values share one
+/// unit and act through the same equilibrium, so column lengths can be compared.
 pub(crate) fn without_rounding(mut jacobian: DMatrix<f64>) -> DMatrix<f64> {
     let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
     let rounding = jacobian.column_iter_mut().filter(|column| column.norm() <= ROUNDING * longest);
     rounding.for_each(|mut column| column.fill(0.0));
-    // So are rows: a coordinate along a table's edge, which no bending moves, says nothing of any curve.
+    // Likewise rows: bending does not move a coordinate along a table's edge, which carries no information on any
+    // curve.
     let longest = jacobian.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
     let rounding = jacobian.row_iter_mut().filter(|row| row.norm() <= UNMOVED * longest);
     rounding.for_each(|mut row| row.fill(0.0));

@@ -13,31 +13,31 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-/// A frame that takes no part because its equilibrium was not found.
+/// A skipped frame: its equilibrium was not found.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DroppedFrame {
     /// Name of the sequence.
     pub sequence: String,
-    /// Index of the frame in it.
+    /// Index of the frame in the sequence.
     pub frame: usize,
-    /// How the solve ended.
+    /// Status of the solve.
     pub status: Status,
 }
 
-/// One frame of a simulation, for those who read it.
+/// One frame of a simulation, read-only.
 #[derive(Debug, Clone, Copy)]
 pub struct Settled<'s> {
     /// The sequence's replica.
     pub replica: &'s Replica,
     /// The frame.
     pub frame: &'s ReplicaFrame,
-    /// Its equilibrium, 3 stacked coordinates a node, m.
+    /// Its equilibrium, 3 stacked coordinates per node, m.
     pub x: &'s [f64],
-    /// An unstable equilibrium was met and left on the way: the frame may have several.
+    /// The solve met an unstable equilibrium and left it: the frame may have several equilibria.
     pub multi_stable: bool,
 }
 
-/// A gap so many times as wide as the widest between frames is no longer bridged: frames are rarely spaced evenly.
+/// A gap wider than this multiple of the widest gap between frames is not bridged: frames are rarely spaced evenly.
 const BRIDGED: f64 = 2.0;
 
 pub(super) type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
@@ -57,16 +57,16 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Finds the first equilibria, and drops the frames that have none.
+    /// Finds the first equilibria and drops frames without one.
     ///
-    /// * `unknowns` — the curves to start from; their strains are the control points that are fitted
+    /// * `unknowns` — the curves to start from; their strains are those of the fitted control points
     pub fn new(replicas: &'a [Replica], task: Task, unknowns: Unknowns, meter: Arc<Meter>) -> Self {
         let mut simulation = Self::unsettled(replicas, task, unknowns, meter);
         simulation.settle();
         simulation
     }
 
-    /// All frames where they would start, none in equilibrium yet.
+    /// All frames at their starting shapes, not yet in equilibrium.
     pub fn unsettled(replicas: &'a [Replica], task: Task, unknowns: Unknowns, meter: Arc<Meter>) -> Self {
         let frames: Vec<(usize, usize)> = replicas
             .iter()
@@ -95,15 +95,15 @@ impl<'a> Simulation<'a> {
         simulation
     }
 
-    /// Lets residuals above so many times the noise count less; where the noise is not known, above so many times the
-    /// typical residual under the curve as it is (its median, as a standard deviation).
+    /// Gives residuals above `limit` times the noise less weight; where the noise is unknown, above `limit` times the
+    /// typical residual under the present curve (its median, as a standard deviation).
     pub fn make_robust(&mut self, limit: f64) {
         self.task.robust = None;
         let unit = if self.noise_is_known() { 1.0 } else { self.typical_residual() };
         self.task.robust = (unit > 0.0).then_some(Robust { limit: limit * unit });
     }
 
-    /// Goes on with other control points; states stay.
+    /// Continues with other control points; states are kept.
     pub fn set_unknowns(&mut self, unknowns: Unknowns) {
         self.unknowns = unknowns;
         // Sensitivities belong to the old control values.
@@ -111,7 +111,7 @@ impl<'a> Simulation<'a> {
         self.states.iter_mut().for_each(|state| state.whitening = None);
     }
 
-    /// True if errors of what is held enter the residuals.
+    /// True if position errors of held lines enter the residuals.
     pub fn is_whitened(&self) -> bool {
         self.states.iter().any(|state| state.whitening.is_some())
     }
@@ -121,23 +121,23 @@ impl<'a> Simulation<'a> {
         &self.unknowns
     }
 
-    /// Number of measurements that are compared, over all frames in use.
+    /// Number of compared measurements, over all frames in use.
     pub fn measurements(&self) -> usize {
         self.settled().map(|s| self.task.objective.observations(s.replica, s.frame).len()).sum()
     }
 
-    /// True if the noise of every sequence is known: residuals then are in units of it.
+    /// True if the noise of every sequence is known; residuals are then in units of it.
     pub fn noise_is_known(&self) -> bool {
         self.replicas.iter().all(|replica| self.noise(replica).is_some())
     }
 
-    /// What turns residuals into newtons or metres: the noise they are in units of (the mean, if sequences differ), or 1.
+    /// Converts residuals to newtons or metres: their noise unit (the mean, if sequences differ), or 1.
     pub fn unit(&self) -> f64 {
         let scales = self.replicas.iter().map(|replica| self.scale(replica));
         scales.sum::<f64>() / self.replicas.len() as f64
     }
 
-    /// What is simulated, and how.
+    /// The task of the simulation.
     pub fn task(&self) -> &Task {
         &self.task
     }
@@ -158,8 +158,8 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// Brings all frames to equilibrium under the curve, and returns the simulated forces along the measured components of
-    /// each, N. Frames that have none are dropped.
+    /// Brings all frames to equilibrium under the curve; returns the simulated forces along the measured components
+    /// of each, N. Drops frames without an equilibrium.
     pub fn settle(&mut self) -> Vec<Vec<f64>> {
         let results = self.solve_frames(&self.curves(), &[], None);
         let mut forces = Vec::new();
@@ -178,11 +178,11 @@ impl<'a> Simulation<'a> {
         forces
     }
 
-    /// The range of an unknown curve's strains over all states, from the 1st to the 99th percentile; of their size where the
-    /// curve is odd, so that either way tells of it alike.
+    /// The range of an unknown curve's strains over all states, from the 1st to the 99th percentile; absolute
+    /// values where the curve is odd.
     ///
-    /// It starts at rest, where stress is known without a measurement, if the gap from there is about as wide as those
-    /// between frames.
+    /// The range starts at rest, where the stress is zero without a measurement, if the gap from there is about as
+    /// wide as those between frames.
     pub fn visited(&self, unknown: &Unknown) -> [f64; 2] {
         let mut strains: Vec<f64> = self.strains(unknown).into_iter().map(|[strain, _]| strain).collect();
         strains.sort_by(f64::total_cmp);
@@ -194,7 +194,7 @@ impl<'a> Simulation<'a> {
         [if low > BRIDGED * self.widest_gap(unknown) { low } else { low.min(0.0) }, high.max(0.0)]
     }
 
-    /// The widest gap between the mean strains of frames that follow one another in strain.
+    /// The widest gap between mean strains of frames, sorted by mean strain.
     fn widest_gap(&self, unknown: &Unknown) -> f64 {
         let of_frame = |s: Settled<'_>| {
             let strains: Vec<f64> = sized_strains(&s, unknown).map(|[strain, _]| strain).collect();
@@ -205,8 +205,8 @@ impl<'a> Simulation<'a> {
         means.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
     }
 
-    /// An unknown curve's strains over all states, each with the area, m², that it stands for; where the curve is odd, their
-    /// sizes.
+    /// An unknown curve's strains over all states, each with its area, m²; absolute values where the curve is
+    /// odd.
     pub fn strains(&self, unknown: &Unknown) -> Vec<[f64; 2]> {
         self.settled().flat_map(|s| sized_strains(&s, unknown).collect::<Vec<_>>()).collect()
     }
@@ -216,13 +216,13 @@ impl<'a> Simulation<'a> {
         self.visited(unknown)[1].max(f64::MIN_POSITIVE)
     }
 
-    /// Vertices that were seen too far off a table's lines, over all frames.
+    /// Vertices too far off a table's lines to be used, over all frames.
     pub fn vertices_left_out(&self) -> usize {
         self.replicas.iter().map(|replica| replica.vertices_left_out).sum()
     }
 
-    /// Of every component, the share of the sheet over all states that is strained beyond its curve's last control point;
-    /// those of which none is are left out.
+    /// Share of the sheet, over all states, strained beyond the last control point of each component's curve; zero
+    /// shares are omitted.
     pub fn extrapolated(&self) -> BTreeMap<Component, f64> {
         let curves = self.curves();
         let share = |component| {

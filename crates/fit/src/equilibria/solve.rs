@@ -1,4 +1,4 @@
-//! One frame in equilibrium: where its solve starts, how it falls back, and what the solution's factor tells.
+//! The equilibrium of one frame: start, fallbacks, and sensitivities from the factorisation.
 
 use super::observation::{Balance, Objective, Observation};
 use super::simulation::{Simulation, SolverPool};
@@ -14,13 +14,14 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Two equilibria of a frame are one if no node is farther apart than this share of a cell.
+/// Two equilibria of a frame are the same if no node differs by more than this share of a cell.
 const SAME_SHAPE: f64 = 0.01;
 
 impl<'a> Simulation<'a> {
-    /// Equilibria of all frames; `change` of the control values since the states were found moves them ahead.
+    /// Equilibria of all frames. `change`, of the control values since the states were found, extrapolates the states
+    /// first.
     ///
-    /// * `groups` — derivatives are taken with respect to their curves
+    /// * `groups` — differentiates with respect to their curves
     pub(super) fn solve_frames(
         &self,
         curves: &Curves,
@@ -62,11 +63,12 @@ impl<'a> Simulation<'a> {
         let mut found = solver.solve(curves, &mut x, settings);
         self.meter.add(&found);
         let mut escaped = found.escaped;
-        // In the plane a triangle cannot turn over without passing through itself: such a balance is that of a crumpled start.
+        // In the plane, a triangle cannot turn over without passing through itself: such an equilibrium stems from a
+        // crumpled start.
         let rest = replica.rest();
         let crumpled = |x: &[f64]| cloth.turns_over(&rest, x);
         if (!found.converged() || crumpled(&x)) && falls_back {
-            // A measured shape or a prediction that was too far off: from the replica's own start instead.
+            // The measured shape or the prediction was too far off: restart from the replica's own start.
             self.meter.begins_anew();
             x.copy_from_slice(&frame.start);
             found = solver.solve(curves, &mut x, settings);
@@ -74,7 +76,7 @@ impl<'a> Simulation<'a> {
             escaped = found.escaped;
         }
         if (!found.converged() || crumpled(&x)) && falls_back && !replica.is_on_table() {
-            // In load steps, from the flat sheet.
+            // Then in load steps, from the flat sheet.
             self.meter.takes_load_steps();
             x.copy_from_slice(&rest);
             found = solver.drive(curves, &mut x, &frame.start, settings);
@@ -94,7 +96,7 @@ impl<'a> Simulation<'a> {
             simulated: Vec::new(),
             derivatives: Vec::new(),
         };
-        // What is no equilibrium has no sensitivities.
+        // Only an equilibrium has sensitivities.
         if found.converged() {
             self.differentiate(&mut solver, replica, frame, curves, groups, &mut result);
         }
@@ -139,9 +141,9 @@ impl<'a> Simulation<'a> {
         result.state.sensitivity = sensitivity;
     }
 
-    /// Follows every sheet between clips that moves in space from its rest through its frames, each from the equilibrium
-    /// before. A frame that so comes to another shape than from its measured one has several equilibria, and is flagged;
-    /// one that cannot be followed starts from its measured shape.
+    /// Follows every sheet between clips that moves in space through its frames, from rest, each frame from the
+    /// previous equilibrium. A frame that thereby reaches another shape than from its measured one has several
+    /// equilibria and is flagged; a frame that continuation does not reach starts from its measured shape.
     pub fn follow(&mut self) {
         let curves = self.curves();
         let followed: Vec<Vec<(usize, State)>> =
@@ -151,7 +153,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// The states of one replica's frames by continuation, with their places among all frames.
+    /// The states of one replica's frames by continuation, with their indices among all frames.
     fn followed(&self, index: usize, curves: &Curves) -> Vec<(usize, State)> {
         let replica = &self.replicas[index];
         if replica.planar || replica.is_on_table() {
@@ -183,7 +185,7 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// A state, moved ahead by a change of the control values.
+/// A state extrapolated by a change of the control values.
 fn predicted(state: &State, cloth: &Cloth, change: Option<&DVector<f64>>) -> Vec<f64> {
     let mut x = state.x.clone();
     let unknowns = cloth.unknowns();
@@ -197,7 +199,7 @@ fn predicted(state: &State, cloth: &Cloth, change: Option<&DVector<f64>>) -> Vec
     x
 }
 
-/// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 a node.
+/// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 entries per node.
 pub(crate) fn parameter_columns(
     cloth: &Cloth,
     curves: &Curves,

@@ -1,4 +1,4 @@
-//! The equilibrium of one frame, and where its first solve starts.
+//! The equilibrium of one frame, and the start of its first solve.
 
 use super::whitening::Whitening;
 use crate::twin::replica::{Replica, ReplicaFrame};
@@ -6,16 +6,16 @@ use cloth_sim::equilibrium::Status;
 use cloth_sim::material::Curves;
 use std::sync::Arc;
 
-/// The equilibrium of one frame at some control values.
+/// The equilibrium of one frame at given control values.
 #[derive(Debug, Clone, Default)]
 pub(super) struct State {
     pub(super) x: Vec<f64>,
-    /// dx/dk: one column of unknowns a control value; empty before the first solve.
+    /// dx/dk: one column of unknowns per control value; empty before the first solve.
     pub(super) sensitivity: Vec<f64>,
-    /// An unstable equilibrium was met and left: others may exist.
+    /// The solve met an unstable equilibrium and left it: others may exist.
     pub(super) escaped: bool,
-    /// How errors of what is held enter; taken anew by [`Simulation::set_unknowns`] and else kept, so that what is minimised
-    /// is one function.
+    /// Weighs errors of held positions. Renewed by [`Simulation::set_curve`] and constant in between, so that the
+    /// objective stays one function.
     pub(super) whitening: Option<Arc<Whitening>>,
 }
 
@@ -25,14 +25,14 @@ pub(super) struct FrameResult {
     pub(super) status: Status,
     /// Simulated force along each measured component, N.
     pub(super) forces: Vec<f64>,
-    /// What is compared, as simulated.
+    /// Simulated values of the compared quantities.
     pub(super) simulated: Vec<f64>,
-    /// Its derivatives, row by row.
+    /// Their derivatives, row by row.
     pub(super) derivatives: Vec<f64>,
 }
 
-/// The replica's own start, with every free node that was seen where it was seen. Off a table that start is made of what was
-/// seen already.
+/// The replica's own start, with every observed free node moved to its measured place. On a table the start already
+/// consists of the observed shape.
 pub(super) fn measured_shape(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
     let mut x = frame.start.clone();
     for observed in frame.observed.iter().filter(|_| !replica.is_on_table()) {
@@ -41,8 +41,8 @@ pub(super) fn measured_shape(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64
     x
 }
 
-/// Where the first solve starts: at the measured shape where that leaves the plane, else at the replica's own start or,
-/// where it is nearer to balance, at the measured shape.
+/// Start of the first solve: the measured shape if it leaves the plane; else the replica's own start or the measured
+/// shape, whichever is nearer to equilibrium.
 pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curves) -> State {
     let cloth = replica.cloth(frame);
     let own = frame.start.clone();

@@ -1,34 +1,34 @@
-//! What is simulated and compared, and how.
+//! The task of a simulation: components, objective, solver settings.
 
 use super::observation::Objective;
 use crate::optimise::robust::Robust;
 use cloth_sim::equilibrium::Settings;
 use cloth_sim::material::Curves;
 
-/// Where the equilibria of the outer loop start.
+/// Start of the equilibria in the outer loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SolveStart {
-    /// At the frame's last equilibrium, moved ahead by the sensitivities; where that fails, at the replica's own start, and
+    /// At the frame's last equilibrium, extrapolated by the sensitivities; if that fails, at the replica's own start,
     /// then by load steps.
     #[default]
     LastEquilibrium,
-    /// At the measured shape of the frame, every time; where none was measured, at the replica's own start. No second try.
+    /// At the frame's measured shape, every time; at the replica's own start if none was measured. No fallback.
     ///
     /// Source: Miguel et al. 2012, §5.1.
     Measured,
 }
 
-/// What is simulated, and how.
+/// The task of a simulation.
 #[derive(Debug, Clone)]
 pub struct Task {
-    /// What is compared.
+    /// The compared quantities.
     pub objective: Objective,
     /// The curves of the components that are not unknown.
     pub known: Curves,
-    /// How equilibria are found.
+    /// Settings of the equilibrium solver.
     pub settings: Settings,
-    /// Where they start.
+    /// Start of the equilibria.
     pub start: SolveStart,
-    /// How far a residual counts in full.
+    /// Limit above which residuals get less weight.
     pub robust: Option<Robust>,
 }

@@ -1,4 +1,5 @@
-//! Where a sheet is held is measured too. Its error moves the whole free cloth, and so many residuals at once.
+//! Whitens residuals for errors of held positions: these are measured too, and each error moves the whole free cloth,
+//! hence many residuals.
 //!
 //! ```text
 //! residual r = noise + N δ       N = ∂x/∂(place of a held line) = −K⁻¹ K_h,   δ ~ σ_h
@@ -6,14 +7,14 @@
 //! whitened:  (I + N̂ N̂ᵀ)^(−½) r = r − N̂ V diag((1 − (1+λ)^(−½))/λ) Vᵀ N̂ᵀ r       N̂ᵀN̂ = V diag(λ) Vᵀ
 //! ```
 //!
-//! Off a table the slope at the last held segment is what matters: unwhitened, 0.015 mm on a line's mean would tilt the
-//! sheet by 0.2 mm at its tip, more than the noise of any vertex.
+//! On a table the slope of the last held segment matters: unwhitened, an error of 0.015 mm in a line's mean would
+//! tilt the sheet by 0.2 mm at its tip, more than the noise of any vertex.
 
 use crate::twin::replica::{Replica, ReplicaFrame};
 use cloth_sim::equilibrium::Solver;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Makes residuals of equal, independent noise of those of one frame.
+/// Transforms the residuals of one frame to independent noise of equal size.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Whitening {
     modes: DMatrix<f64>,
@@ -22,7 +23,7 @@ pub(crate) struct Whitening {
 }
 
 impl Whitening {
-    /// * `modes` — N̂: one row a residual, one column a direction in which something held may err
+    /// * `modes` — N̂: one row per residual, one column per direction of a held position's error
     pub(crate) fn new(modes: DMatrix<f64>) -> Self {
         let SymmetricEigen { eigenvectors, eigenvalues } = (modes.transpose() * &modes).symmetric_eigen();
         let shares = eigenvalues.map(|value| {
@@ -35,7 +36,7 @@ impl Whitening {
         Self { modes, shrink }
     }
 
-    /// Of the free nodes of a sheet on a table, by errors of where its last lines are held.
+    /// For the free nodes of a sheet on a table, from errors of the last held lines.
     pub(super) fn of_table(solver: &mut Solver<'_>, replica: &Replica, frame: &ReplicaFrame) -> Self {
         let unknowns = replica.cloth(frame).unknowns();
         let mut modes: Vec<f64> = solver.border().iter().map(|k| -k).collect();
@@ -48,7 +49,7 @@ impl Whitening {
         }))
     }
 
-    /// Whitens columns that have one row a residual: residuals, or their derivatives.
+    /// Whitens columns with one row per residual: residuals, or their derivatives.
     pub(crate) fn apply(&self, columns: &mut DMatrix<f64>) {
         let along = &self.shrink * (self.modes.transpose() * &*columns);
         *columns -= &self.modes * along;

@@ -1,4 +1,4 @@
-//! Models and variants side by side on one measurement set: which one to use.
+//! Ranks models and variants on one measurement set.
 //!
 //! ```text
 //! relative residual of a sequence     rms force / largest measured force        where forces were measured
@@ -6,9 +6,10 @@
 //! overall figure of some sequences    root mean square of their relative residuals
 //! ```
 //!
-//! The travel of a sheet on a table is its drop below the table's plane; that of another, the way from its rest shape.
-//! More parameters always fit better. So what ranks is, if there is one, the figure of sequences that the fit did not
-//! see: complex shear and corner pulls, else sequences left out one at a time, where all could spare the same ones.
+//! The travel of a sheet on a table is its drop below the table's plane; that of any other sheet, the distance from
+//! its rest shape. More parameters always fit better, so the ranking uses sequences outside the fit: complex shear
+//! and corner pulls if there are any, else sequences left out one at a time, provided that all entries could spare
+//! the same ones.
 //!
 //! Source: Miguel et al. 2012, §6 (models, variants, validation motions).
 
@@ -37,26 +38,26 @@ pub fn validation_kinds() -> Vec<Kind> {
     Kind::ALL.into_iter().filter(|kind| kind.shows().is_empty()).collect()
 }
 
-/// The settings of all models and variants, all else as given.
+/// The settings of every model and variant, otherwise as given.
 pub fn contestants(base: &Settings) -> Vec<Settings> {
     let of_model =
         |model| Variant::ALL.into_iter().map(move |variant| Settings { model, variant, ..base.clone() });
     Model::ALL.into_iter().flat_map(of_model).collect()
 }
 
-/// One model in one variant: its figures, and all that they sum up.
+/// One model in one variant: its figures, and the reports that they summarise.
 #[must_use]
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// The figures.
     pub row: Row,
-    /// What the fit found.
+    /// Report of the fit.
     pub report: FitReport,
-    /// How it meets the sequences left for validation, if there are any.
+    /// Prediction of the validation sequences, if there are any.
     pub validation: Option<Prediction>,
 }
 
-/// Fits one model in one variant and predicts what it did not see.
+/// Fits one model in one variant and predicts the sequences outside the fit.
 ///
 /// # Errors
 /// As [`incremental::fit`].
@@ -91,7 +92,7 @@ pub fn run(
     Ok(Entry { row, report, validation })
 }
 
-/// Without a stretch curve a sheet has no shape to predict.
+/// Without a stretch curve there is no prediction: nothing resists the pull of the clips.
 fn validation(
     set: &MeasurementSet,
     report: &FitReport,

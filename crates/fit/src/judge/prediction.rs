@@ -1,4 +1,4 @@
-//! How known curves meet tests, whatever they were fitted to.
+//! Predicts tests from known curves.
 
 use crate::equilibria::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task, Unknowns};
 use crate::stage::interventions::Interventions;
@@ -16,32 +16,32 @@ use cloth_sim::material::{Component, Curves};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How known curves meet tests.
+/// Prediction of tests from known curves.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// How each sequence was met.
+    /// Residuals of each sequence.
     pub sequences: Vec<SequenceReport>,
-    /// Components that are not known: a constant stiffness was assumed.
+    /// Components without a curve; a constant stiffness was assumed.
     pub assumed: Vec<Component>,
-    /// Frames without an equilibrium, which take no part.
+    /// Skipped frames: no equilibrium.
     pub dropped: Vec<DroppedFrame>,
-    /// Contradictions within the measurements; a sequence that was refused takes no part.
+    /// Contradictions within the measurements; refused sequences are skipped.
     pub notices: Vec<Notice>,
-    /// What the solves have cost.
+    /// Cost of the solves.
     pub counters: Counters,
-    /// What helped them along.
+    /// Numerical interventions of the solves.
     pub interventions: Interventions,
 }
 
-/// Simulates all sequences of some kinds with known curves: how well they are predicted.
+/// Simulates all sequences of some kinds with known curves.
 ///
-/// * `assumed` — stiffnesses that the fit of the curves has assumed of what it did not know: they are taken again
+/// * `assumed` — stiffnesses that the fit assumed for components it did not know, used again here
 ///
-/// Sheets between clips that leave their plane are followed from rest through all frames, as a simulator would meet them.
+/// Sheets between clips that leave their plane are followed from rest through all frames, as in a forward simulation.
 ///
 /// # Errors
-/// Bad settings; sequences that no replica can be made of; none that was not refused.
+/// Invalid settings; a sequence that no replica can be made of; no sequence left after refusals.
 pub fn predict(
     set: &MeasurementSet,
     kinds: &[Kind],
@@ -89,9 +89,10 @@ pub fn predict(
     })
 }
 
-/// What is known, and what is assumed beside it: as the fit did. Where that is not said, for one of weft and warp the
-/// other's mean stiffness, which across a strip hardly matters; for both, and for the shear of a sheet off a table, a membrane
-/// that hardly gives; for a bending curve the softest of the others, without which the sheet would crumple along its lines.
+/// The known curves, completed by assumed ones, as in the fit where its assumptions are given. Otherwise: for one of
+/// weft and warp, the mean stiffness of the other, which hardly matters across a strip; for both, and for the shear
+/// of a sheet on a table, a nearly inextensible membrane; for a bending curve, the softest of the others, without
+/// which the sheet would crumple along its lines.
 fn completed(
     curves: &Curves,
     unknown: &[Component],
@@ -124,9 +125,9 @@ fn mechanics(source: cloth_sim::error::Error) -> Error {
     Error::Mechanics { context: "prediction".into(), source }
 }
 
-/// What a test's replica consists of: in strips pulled along their yarns shear and bending play no part. Without any
-/// bending, known or assumed, a sheet between clips stays in its plane: in space it would crumple. Only a sheet off a table
-/// has shear that is not known.
+/// Components of a test's replica. Strips pulled along their yarns have neither shear nor bending. Without any
+/// bending, known or assumed, a sheet between clips stays in its plane, since in space it would crumple. Only a sheet
+/// on a table has shear without a known curve.
 fn parts(
     kind: Kind,
     set: &MeasurementSet,

@@ -1,4 +1,4 @@
-//! The stable curve that is nearest in stress to one that is not.
+//! Repairs an unstable curve: finds the stable curve nearest in stress.
 //!
 //! ```text
 //! minimise   ∫ (σ̂ − σ)² dε  over [0, εₙ]                           by Simpson's rule on every segment
@@ -8,7 +8,7 @@
 //!
 //! Stress is linear in the control values, and so are the [rows](stability_rows) that bound its tangent: a convex
 //! quadratic program. Its scale κ follows the curve in a few rounds. The rows are sufficient, not necessary; they
-//! certify 98 % of the curves that rise. A curve that passes the check is its own repair.
+//! certify 98 % of the curves that rise. A curve that passes the check is returned unchanged.
 
 use crate::optimise::least_squares::LeastSquares;
 use cloth_sim::curve::soundness::{Context, Finding, Kind, LEAST_TANGENT, TANGENT_RATIO, check, extremes};
@@ -16,41 +16,41 @@ use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
-/// κ and the ratio are kept by this share more than the check asks.
+/// Relative margin of κ and of the ratio beyond the limits of the check.
 const MARGIN: f64 = 2e-3;
 /// Rounds in which κ follows the curve's own scale.
 const ROUNDS: usize = 12;
-/// Below this share of its largest control value, positive or negative, what is left of a curve is nothing.
+/// A curve whose stiffness stays below this share of the given curve's largest control value counts as zero.
 const VANISHED: f64 = 1e-6;
 
-/// A repaired curve, and how far it is from the one that was given.
+/// A repaired curve, and its distance from the given one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repair {
     /// Control points at the same strains.
     pub curve: StiffnessCurve,
     /// Root mean square of the change of stress from zero to the last control point, N/m (bending: N).
     pub rms: f64,
-    /// Largest change of stress at a control point or midway, without sign.
+    /// Largest absolute change of stress at a control point or midway.
     pub largest: f64,
     /// The strain of the largest change.
     pub at: f64,
 }
 
 impl Repair {
-    /// True if the curve was sound as it was.
+    /// True if the curve needed no repair.
     pub fn is_unchanged(&self) -> bool {
         self.largest == 0.0
     }
 }
 
-/// Why a curve cannot be repaired.
+/// Reason why a curve cannot be repaired.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unrepairable {
-    /// Its magnitude is that of no cloth: a change of unit is not a repair.
+    /// Implausible magnitude: a change of unit is not a repair.
     Magnitude(Finding),
-    /// Its stress is so largely negative that the nearest curve that never falls is zero.
+    /// Stress so strongly negative that zero is the nearest curve that never falls.
     NoStiffness,
-    /// The quadratic program has no solution in finite digits.
+    /// The quadratic program has no solution in floating point.
     Unsolved,
 }
 
@@ -59,7 +59,8 @@ impl fmt::Display for Unrepairable {
         match self {
             Self::Magnitude(finding) => write!(
                 f,
-                "a largest stiffness of {:.3e}, where {} {:.0e} is plausible: probably another unit, which no repair can tell",
+                "a largest stiffness of {:.3e}, where {} {:.0e} is plausible: probably another unit, which a repair \
+                 cannot correct",
                 finding.value,
                 if finding.value < finding.limit { "at least" } else { "at most" },
                 finding.limit
@@ -67,22 +68,24 @@ impl fmt::Display for Unrepairable {
             Self::NoStiffness => {
                 write!(
                     f,
-                    "stress of the wrong sign over so much of its range that no stiffness at all is the nearest stable curve"
+                    "stress of the wrong sign over so much of its range that the nearest stable curve is zero"
                 )
             }
-            Self::Unsolved => write!(f, "no solution of the quadratic program: its values lie too far apart"),
+            Self::Unsolved => {
+                write!(f, "no solution of the quadratic program: its values differ too much in magnitude")
+            }
         }
     }
 }
 
 impl std::error::Error for Unrepairable {}
 
-/// Repairs a curve. One that passes the check comes back as it is, to the bit.
+/// Repairs a curve. A curve that passes the check is returned bit for bit.
 ///
-/// * `context` — of the check that the result passes
+/// * `context` — the context of the check that the result passes
 ///
 /// # Errors
-/// What no repair can mend.
+/// A curve that cannot be repaired.
 pub fn repair(curve: &StiffnessCurve, context: &Context) -> Result<Repair, Unrepairable> {
     let found = check(curve, context);
     if let Some(&finding) = found.iter().find(|finding| finding.kind == Kind::Magnitude) {
@@ -111,12 +114,12 @@ pub fn repair(curve: &StiffnessCurve, context: &Context) -> Result<Repair, Unrep
     problem.made_sound(&nearest, context).map(|curve| problem.repaired(curve))
 }
 
-/// The linear algebra of one curve: what a change of its control values does.
+/// Linear algebra of one curve: effect of its control values on the stress.
 struct Problem<'a> {
     curve: &'a StiffnessCurve,
-    /// Control points, and the middles between them.
+    /// Control points and the midpoints between them.
     strains: Vec<f64>,
-    /// Simpson's weights; they sum up to 1.
+    /// Simpson weights; their sum is 1.
     weights: Vec<f64>,
     /// ∂σ/∂k there.
     stress: DMatrix<f64>,
@@ -142,10 +145,10 @@ impl<'a> Problem<'a> {
         Self { curve, strains, weights, stress }
     }
 
-    /// The nearest curve with tangents of `lowest` at least. The unknowns are the changes of the control values and, with
-    /// `ratio`, the least tangent, below which none is and above which none is more than the ratio allows.
+    /// The nearest curve with tangents of at least `lowest`. The unknowns are the changes of the control values and,
+    /// with `ratio`, the least tangent, which bounds all tangents from below and, times the ratio, from above.
     fn nearest(&self, lowest: f64, ratio: bool) -> Result<StiffnessCurve, Unrepairable> {
-        // The strains are those of a curve.
+        // The strains come from a valid curve.
         let tangents = stability_rows(self.curve.strains()).map_err(|_| Unrepairable::Unsolved)?;
         let before = &tangents * DVector::from_column_slice(self.curve.stiffnesses());
         let (count, points) = (tangents.nrows(), self.curve.len());
@@ -173,8 +176,8 @@ impl<'a> Problem<'a> {
         self.curve.with_stiffnesses(stiffnesses.collect()).map_err(|_| Unrepairable::Unsolved)
     }
 
-    /// A curve that passes the check: this one, or with what little of a straight line it takes. Blends of sound curves
-    /// are sound, and a line is as sound as a curve can be.
+    /// A curve that passes the check: this one, or a blend with as small a share of a straight line as needed. Blends
+    /// of sound curves are sound, and a line is the soundest curve.
     fn made_sound(
         &self,
         nearest: &StiffnessCurve,

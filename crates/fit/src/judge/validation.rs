@@ -1,7 +1,7 @@
-//! Curves on motions and samples that the fit has not seen.
+//! Tests curves on motions and samples outside the fit.
 //!
-//! Where a sheet buckles, its equilibria are discontinuous, and the distance between two shapes says little: what is
-//! compared there are measures of the whole (Miguel et al. 2012, §6, figure 7).
+//! Equilibria of a buckled sheet are discontinuous, and the distance between two shapes says little. Such tests
+//! compare one aggregate measure per frame instead (Miguel et al. 2012, §6, figure 7).
 
 use crate::judge::prediction::{Prediction, predict};
 use crate::stage::report::{ForceRow, SequenceReport};
@@ -21,22 +21,22 @@ use std::collections::BTreeMap;
 pub struct MeasureRow {
     /// Index of the frame in its sequence.
     pub frame: usize,
-    /// How far the test went: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
+    /// Extension of the test: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
     pub extension: f64,
     /// Measured.
     pub measured: f64,
     /// Simulated.
     pub simulated: f64,
-    /// The frame has several equilibria.
+    /// True if the frame has several equilibria.
     pub multi_stable: bool,
 }
 
-/// How a sequence was met.
+/// Validation of one sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validated {
     /// Forces and shapes.
     pub report: SequenceReport,
-    /// The measure of the whole, where the kind of test has one, and its rows.
+    /// The aggregate measure and its rows, if the kind of test has one.
     pub measure: Option<(Summary, Vec<MeasureRow>)>,
 }
 
@@ -48,7 +48,7 @@ impl Validated {
         Some((square / rows.len() as f64).sqrt())
     }
 
-    /// The same as a share of the range that was measured.
+    /// The same as a share of the measured range.
     pub fn measure_share(&self) -> Option<f64> {
         let (_, rows) = self.measure.as_ref()?;
         let [low, high] = rows
@@ -58,23 +58,23 @@ impl Validated {
     }
 }
 
-/// How known curves meet a set.
+/// Validation of known curves on a set.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validation {
-    /// Every sequence of the kinds asked for that has a frame with an equilibrium.
+    /// Sequences of the requested kinds with at least one equilibrium.
     pub sequences: Vec<Validated>,
-    /// Frames without an equilibrium and what it all cost.
+    /// The prediction: skipped frames, cost.
     pub prediction: Prediction,
 }
 
 impl Validation {
-    /// Frames of a sequence that take no part: at rest, or without an equilibrium.
+    /// Skipped frames of a sequence: at rest, or without an equilibrium.
     pub fn left_out(&self, sequence: &SequenceReport) -> usize {
         sequence.left_out(&self.prediction.dropped)
     }
 
-    /// Names of the sequences of which no frame has an equilibrium, with the number of their frames.
+    /// Sequences without any equilibrium, by name, with their number of frames.
     pub fn lost(&self) -> Vec<(&str, usize)> {
         let mut lost: Vec<&str> = self.prediction.dropped.iter().map(|frame| &frame.sequence[..]).collect();
         lost.dedup();
@@ -87,9 +87,9 @@ impl Validation {
     }
 }
 
-/// Predicts sequences of a set, and measures them as wholes.
+/// Predicts sequences of a set and computes their aggregate measures.
 ///
-/// * `kinds` — which tests; all others are left out
+/// * `kinds` — tests to predict; others are skipped
 /// * `assumed` — as in [`predict`]
 ///
 /// # Errors
@@ -112,7 +112,7 @@ pub fn validate(
     Ok(Validation { sequences: prediction.sequences.iter().map(validated).collect(), prediction })
 }
 
-/// The measure in every frame in which all clips' forces are known.
+/// The measure in every frame with all clip forces known.
 fn measure_rows(measure: Summary, sequence: &Sequence, report: &SequenceReport) -> Vec<MeasureRow> {
     let mut frames: Vec<usize> = report.forces.iter().map(|row| row.frame).collect();
     frames.dedup();
@@ -130,7 +130,7 @@ fn measure_rows(measure: Summary, sequence: &Sequence, report: &SequenceReport) 
     frames.into_iter().filter_map(row).collect()
 }
 
-/// The measure of one frame from its force components, measured or simulated, in the world's axes.
+/// The measure of one frame from its force components, measured or simulated, in world axes.
 fn measured_whole(
     measure: Summary,
     sequence: &Sequence,

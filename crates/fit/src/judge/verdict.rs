@@ -1,4 +1,4 @@
-//! How far a fitted curve can be trusted: by how sure it is and how far off its measurements, not by convergence.
+//! Grades a fitted curve by its uncertainty and its residuals, not by convergence.
 //!
 //! ```text
 //!                                          green      amber      red
@@ -7,7 +7,7 @@
 //! contradictions, assumptions that matter     none       any
 //! ```
 //!
-//! Two laboratories differ by 15–25 % on one fabric (Cao et al. 2008), so a tenth is good and a third is little.
+//! Two laboratories differ by 15–25 % on one fabric (Cao et al. 2008): a tenth is good, a third is poor.
 
 use crate::incremental::FitReport;
 use crate::stage::report::{Sample, SequenceReport, StageReport};
@@ -16,15 +16,15 @@ use cloth_sim::material::Component;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How far to trust a curve, or all of a fit.
+/// Trust in a curve, or in a whole fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Grade {
-    /// As far as its band says.
+    /// Reliable within its band.
     Green,
-    /// With the reservation that is named.
+    /// Reliable with the stated reservation.
     Amber,
-    /// Not without another measurement.
+    /// Not reliable without another measurement.
     Red,
 }
 
@@ -42,9 +42,9 @@ impl fmt::Display for Grade {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Verdict {
-    /// The worst of all reasons; green without any.
+    /// The worst grade of all reasons; green without any.
     pub grade: Grade,
-    /// As clauses, the worst first.
+    /// Reasons as clauses, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reasons: Vec<String>,
 }
@@ -57,16 +57,16 @@ impl Verdict {
     }
 }
 
-/// Widest band and largest residual, as shares, up to which a grade is given.
+/// Upper limits of band and residual, as shares, for green and amber.
 const BAND: [f64; 2] = [0.1, 0.3];
 const RESIDUAL: [f64; 2] = [0.05, 0.15];
-/// One frame, or two, agree with almost any curve.
+/// One or two frames agree with almost any curve.
 const FEWEST: usize = 3;
-/// Frames without an equilibrium beyond this share are no accident.
+/// More frames without an equilibrium than this share are no accident.
 const DROPPED: f64 = 0.25;
 
 fn grade(share: f64, [green, amber]: [f64; 2]) -> Grade {
-    // Written so that no number is red.
+    // Ordered so that NaN is red.
     if share <= green {
         Grade::Green
     } else if share <= amber {
@@ -78,7 +78,7 @@ fn grade(share: f64, [green, amber]: [f64; 2]) -> Grade {
 
 /// Judges the curve of a stage.
 ///
-/// * `notices` — what was noticed of the measurements
+/// * `notices` — notices on the measurements
 pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     let doubted = |notice: &&Notice| {
         notice.severity == Severity::Doubt && stage.sequences.iter().any(|s| s.name == notice.sequence)
@@ -86,7 +86,7 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     let mut reasons: Vec<(Grade, String)> =
         notices.iter().filter(doubted).map(|notice| (Grade::Amber, notice.to_string())).collect();
     if !stage.curve.observed {
-        reasons.push((Grade::Red, "the measurements do not tell it".into()));
+        reasons.push((Grade::Red, "the measurements do not determine it".into()));
         return Verdict::of(reasons);
     }
     reasons.extend(unsure(stage));
@@ -95,7 +95,10 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
     let odd = stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty());
     reasons.extend(odd.map(|sequence| {
         let frames: Vec<String> = sequence.outliers.iter().take(4).map(usize::to_string).collect();
-        (Grade::Amber, format!("frame {} of {} lies far off the rest", frames.join(", "), sequence.name))
+        (
+            Grade::Amber,
+            format!("frame {} of {} stands out from its neighbours", frames.join(", "), sequence.name),
+        )
     }));
     let used: usize = stage.sequences.iter().map(|sequence| sequence.frames).sum();
     let dropped = stage.dropped.len() as f64 / (stage.dropped.len() + used).max(1) as f64;
@@ -104,22 +107,22 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
         reasons.push((Grade::Amber, found));
     }
     if stage.scatter.noise_is_overstated() {
-        let found = "less is left than the noise that was declared: is it too large?";
+        let found = "the residual is below the given noise, which may be too large";
         reasons.push((Grade::Amber, found.into()));
     }
     if used > 0 && used < FEWEST {
         reasons.push((
             Grade::Amber,
-            format!("{used} of {FEWEST} frames that it takes to contradict each other"),
+            format!("only {used} of the {FEWEST} frames needed to reveal a contradiction"),
         ));
     }
     if !stage.converged {
-        reasons.push((Grade::Amber, "the fit did not come to its minimum".into()));
+        reasons.push((Grade::Amber, "the fit did not converge".into()));
     }
     Verdict::of(reasons)
 }
 
-/// Judges a fit by its worst curve; what failed or was refused is at least amber.
+/// Grades a fit by its worst curve; a failure or a refusal is at least amber.
 pub fn of_fit(report: &FitReport) -> Verdict {
     let mut reasons: Vec<(Grade, String)> = Vec::new();
     for stage in report.last_stages() {
@@ -129,7 +132,7 @@ pub fn of_fit(report: &FitReport) -> Verdict {
         }
     }
     reasons.extend(report.failures.iter().map(|failure| (Grade::Red, failure.in_words())));
-    // Of those that made a stage fail nothing more is to be said.
+    // Skips refusals that a failed stage already reports.
     let refused = report.notices.iter().filter(|notice| notice.severity == Severity::Refusal);
     let told = |said: &String| report.failures.iter().any(|failure| failure.reason == *said);
     let left_out = refused.map(Notice::to_string).filter(|said| !told(said));
@@ -140,7 +143,7 @@ pub fn of_fit(report: &FitReport) -> Verdict {
     Verdict::of(reasons)
 }
 
-/// Where a band is widest, and half its width as a share of the curve's largest stress.
+/// Strain at which the band is widest, and half its width as a share of the curve's largest stress.
 pub fn widest_band(stage: &StageReport) -> Option<(f64, f64)> {
     let samples = &stage.curve.samples;
     let largest = samples.iter().fold(f64::MIN_POSITIVE, |most, sample| most.max(sample.stress.abs()));
@@ -151,24 +154,24 @@ pub fn widest_band(stage: &StageReport) -> Option<(f64, f64)> {
     widths.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// A band that is wide, or that there is none of where the curve was seen.
+/// Reason: a wide band, or no band where the curve was observed.
 fn unsure(stage: &StageReport) -> Option<(Grade, String)> {
     let seen = |sample: &&Sample| sample.strain >= stage.curve.seen[0] && sample.strain != 0.0;
     let widest =
         widest_band(stage).filter(|_| stage.curve.samples.iter().filter(seen).all(|s| s.band.is_some()));
     let Some((place, share)) = widest else {
-        return Some((Grade::Red, "how sure it is, is not known over all of its range".into()));
+        return Some((Grade::Red, "its uncertainty is not known over all of its range".into()));
     };
     let grade = grade(share, BAND);
     let (quantity, at) = match stage.components[0].is_bending() {
         true => ("moment", format!("{place:.1} 1/m")),
         false => ("stress", format!("{place:.4}")),
     };
-    let said = format!("known to ± {:.1} % of its largest {quantity} only, at {at}", 100.0 * share);
+    let said = format!("known only to ± {:.1} % of its largest {quantity}, at {at}", 100.0 * share);
     (grade > Grade::Green).then_some((grade, said))
 }
 
-/// A sequence that the curve misses.
+/// Reason: a sequence that the curve misses.
 fn far_off(sequence: &SequenceReport) -> Option<(Grade, String)> {
     let name = &sequence.name;
     let (share, of) = match (sequence.force_rms, sequence.position_rms) {
@@ -182,7 +185,7 @@ fn far_off(sequence: &SequenceReport) -> Option<(Grade, String)> {
     (grade > Grade::Green).then_some((grade, said))
 }
 
-/// Curves that nobody measured and that shear depends on: bending of a sheet that may buckle, else stretch of its yarns.
+/// Reason: an assumed curve that shear depends on, bending of a sheet that may buckle, else stretch of its yarns.
 fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
     let names = |is_meant: &dyn Fn(Component) -> bool| {
         let meant = stage.basis.assumed.iter().filter(|&&component| is_meant(component));
@@ -194,16 +197,16 @@ fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
     let bends = names(&Component::is_bending);
     if !bends.is_empty() {
         let said = format!(
-            "the sheet may buckle and its bending is assumed ({bends}): the band reaches to a sheet that does not bend, and \
-             tests of bending (fit) would narrow it"
+            "the sheet may buckle and its bending is assumed ({bends}): the band includes the case of a flat \
+             sheet; bending tests (fit) would narrow it"
         );
         return Some((Grade::Amber, said));
     }
     let stretches = names(&Component::is_stretch);
     (!stretches.is_empty()).then(|| {
         let said = format!(
-            "yarns that hardly give are assumed ({stretches}): where they do, shear comes out too soft, and tests of stretch \
-             would tell"
+            "nearly inextensible yarns are assumed ({stretches}): if they stretch, the fitted shear is too \
+             soft; stretch tests would settle it"
         );
         (Grade::Amber, said)
     })

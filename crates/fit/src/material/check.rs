@@ -1,4 +1,4 @@
-//! Whether curves can be simulated: the check of every curve of a material.
+//! Checks every curve of a material for stable simulation.
 
 use crate::material::file::MaterialFile;
 use cloth_data::error::{Error, Result};
@@ -6,23 +6,23 @@ use cloth_sim::curve::soundness::{self, Context, Finding};
 use cloth_sim::material::{Component, Curves, Model};
 use std::path::Path;
 
-/// What a component's curve is checked against in a model.
+/// Context for the check of a component's curve in a model.
 ///
 /// * `visited` — the strains that a measurement visited, if there was one
 pub fn context(model: Model, component: Component, visited: Option<[f64; 2]>) -> Context {
     Context { magnitude: model.strain_measure(component).plausible_stiffness(), visited }
 }
 
-/// The findings of every curve of a material, those without any too.
+/// The findings on every curve of a material; also lists curves without findings.
 ///
 /// # Errors
-/// Control points that make no curve.
+/// Control points that do not form a valid curve.
 pub fn check_material(file: &MaterialFile) -> Result<Vec<(Component, Vec<Finding>)>> {
     let visited = |component| file.curves[&component].visited_strain;
     Ok(check_curves(file.model, &file.curves()?, visited))
 }
 
-/// The findings of every curve, those without any too.
+/// The findings on every curve; also lists curves without findings.
 ///
 /// * `visited` — the strains that a measurement of a component visited, if there was one
 pub fn check_curves(
@@ -37,9 +37,9 @@ pub fn check_curves(
     curves.components().filter_map(|component| Some((component, findings(component)?))).collect()
 }
 
-/// Refuses curves whose shape can go wrong in a simulation, whatever their unit; the first defect is named.
+/// Rejects curves whose shape can make a simulation fail, whatever their unit; names the first defect.
 ///
-/// * `what` — the file that they come from
+/// * `what` — the file that contains them
 ///
 /// # Errors
 /// A curve that is not stable.
@@ -69,7 +69,7 @@ mod tests {
             [weft, (Component::Shear, shear)].into_iter().collect::<Curves>()
         };
         let path = Path::new("material.json");
-        // Another unit may be meant: stable it is.
+        // Probably another unit, but stable.
         assert!(refuse_unstable(&with(curve(vec![1.0; 3])), path).is_ok());
         let error = refuse_unstable(&with(curve(vec![9.0, 9.0, 1.0])), path).unwrap_err().to_string();
         assert!(error.contains("material.json shear: found low-tangent from 0.1"), "{error}");

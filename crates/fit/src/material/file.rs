@@ -1,6 +1,6 @@
-//! `material.json`: what a simulator needs of a fitted fabric, and how sure it is.
+//! `material.json`: a fitted fabric for a simulator, with its uncertainty.
 //!
-//! Versioned by its `schema`. Control points, not samples, so that nothing is lost on the way to a simulator of ours.
+//! Versioned by its `schema`. Stores control points, not samples, so that a simulator reproduces the curves exactly.
 
 mod control_point;
 mod entry;
@@ -25,7 +25,7 @@ use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The version of the file that is written and read.
+/// The version of the file format.
 pub const SCHEMA: &str = "fit-cloth/material/1";
 
 /// The whole file.
@@ -34,62 +34,62 @@ pub const SCHEMA: &str = "fit-cloth/material/1";
 pub struct MaterialFile {
     /// [`SCHEMA`].
     pub schema: String,
-    /// The cloth model whose strains the curves are over.
+    /// The model of the curves' strain measures.
     pub model: Model,
-    /// Which of its freedoms were used.
+    /// The model variant.
     #[serde(default)]
     pub variant: Variant,
-    /// What weft and warp do under compression.
+    /// Behaviour of weft and warp under compression.
     pub compression: Compression,
-    /// The sample that was measured.
+    /// The measured sample.
     pub fabric: Fabric,
-    /// What each curve gives over what, in words.
+    /// Stress and strain measure of each curve, in words.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub measures: BTreeMap<Component, String>,
-    /// One entry a component, observed or not.
+    /// One entry per component, observed or not.
     #[serde(deserialize_with = "unique")]
     pub curves: BTreeMap<Component, CurveEntry>,
-    /// How each sequence was met.
+    /// Residuals of each sequence.
     pub residuals: Vec<ResidualEntry>,
-    /// Stages that came to nothing, and why.
+    /// Failed stages, with reasons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<String>,
     /// Contradictions within the measurements.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notices: Vec<Notice>,
-    /// How the file came about.
+    /// Origin of the file.
     pub provenance: Provenance,
 }
 
-/// How the file came about.
+/// Origin of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Program and version.
     pub program: String,
-    /// What kept the curves physical.
+    /// Constraints on the curves.
     pub constraints: Constraints,
-    /// The published method fitted it, as [`Settings::as_published`] says; absent where ours did.
+    /// True for a fit by the published method ([`Settings::as_published`]); omitted otherwise.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub as_published: bool,
-    /// Residuals above so many times the noise counted less; absent where all counted in full.
+    /// Residuals above this multiple of the noise had less weight; omitted if all had full weight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robust: Option<f64>,
-    /// How the simulation's cells were split: a bending curve of hinges belongs to its triangulation.
+    /// Split of the simulation's cells: a bending curve of hinges belongs to its triangulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagonals: Option<Diagonals>,
-    /// Columns and rows of the simulation, a sequence each.
+    /// Columns and rows of the simulation's grid, per sequence.
     #[serde(deserialize_with = "unique")]
     pub nodes: BTreeMap<String, [usize; 2]>,
-    /// What was changed after the fit, in order: repairs, and edits by hand.
+    /// Changes after the fit, in order: repairs, and edits by hand.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<String>,
 }
 
 impl MaterialFile {
-    /// Collects what the fit of one model found.
+    /// Collects the result of one model's fit.
     ///
-    /// * `given` — the file whose curves the fit took as known, if there was one
+    /// * `given` — the file with the curves that the fit took as known, if there was one
     pub fn new(
         set: &MeasurementSet,
         settings: &Settings,
@@ -134,7 +134,7 @@ impl MaterialFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no such file, with line and field.
+    /// A file that cannot be read or is not a material file, with line and field.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
         let file: Self = parse_version(path, &text, SCHEMA)?;
@@ -142,12 +142,12 @@ impl MaterialFile {
         Ok(file)
     }
 
-    /// Puts another curve in the place of an observed one, and says so in the provenance.
+    /// Replaces an observed curve and records it in the provenance.
     ///
-    /// Deviations go: they were those of the curve that was fitted. What the measurement told of it stays only where the
-    /// control points keep their strains. Components that shared the curve no longer do.
+    /// Deviations are dropped, since they belong to the fitted curve. Other statements on the measurement are kept
+    /// only if the control points keep their strains. Components that shared the curve no longer do.
     ///
-    /// * `change` — in words, what was done
+    /// * `change` — description of the change
     pub fn set_curve(&mut self, component: Component, curve: &StiffnessCurve, change: &str) {
         let unit = Unit::of(self.model, component);
         let entry = self.curves.entry(component).or_default();
@@ -168,19 +168,19 @@ impl MaterialFile {
 
     /// The file's text.
     pub fn to_json(&self) -> String {
-        // Strings, numbers and maps with string keys: nothing here can fail to be JSON.
+        // Strings, numbers and maps with string keys only: serialisation cannot fail.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 
     /// The curves that were observed or given.
     ///
     /// # Errors
-    /// Control points that make no curve.
+    /// Control points that do not form a valid curve.
     pub fn curves(&self) -> Result<Curves> {
         self.named_curves().map_err(|defect| defect.at(Path::new("material.json"), ""))
     }
 
-    /// The stiffnesses that the fit assumed of what nobody measured: [`Basis::all_assumed`].
+    /// The stiffnesses that the fit assumed for unmeasured components: [`Basis::all_assumed`].
     pub fn assumed(&self) -> BTreeMap<Component, f64> {
         Basis::all_assumed(|component| self.curves.get(&component)?.basis.as_ref())
     }
@@ -201,7 +201,7 @@ impl MaterialFile {
     }
 }
 
-/// What a component's curve gives over what.
+/// Stress and strain measure of a component's curve.
 fn measure(model: Model, component: Component) -> String {
     let measure = model.strain_measure(component);
     let [strain, stress] = measure.names();
@@ -212,7 +212,7 @@ fn measure(model: Model, component: Component) -> String {
         | StrainMeasure::Shear
         | StrainMeasure::Diagonal => format!("{stress} per width [N/m] over {strain} [1]"),
         StrainMeasure::RingTwo => {
-            "stress of ring-2 springs [N/m] over their strain [1], of this grid only".into()
+            "stress of ring-2 springs [N/m] over their strain [1], valid for this grid only".into()
         }
         StrainMeasure::Hinge => format!(
             "{stress} [N] over the strain of hinges [1/m], three times the curvature: stiffness_n_m is a third of the flexural \
@@ -221,7 +221,7 @@ fn measure(model: Model, component: Component) -> String {
     }
 }
 
-/// A control point that makes no curve.
+/// An invalid control point.
 struct Defect {
     component: Component,
     /// Counted from 0.
@@ -245,14 +245,14 @@ impl Defect {
         let Self { component, point, reason } = self;
         let places = serde_json::from_str::<File<'_>>(text).ok();
         let place = places.as_ref().and_then(|file| file.curves.get(&component)?.control_points.get(point));
-        // A raw value is a part of the text itself.
+        // A raw value is a slice of the text.
         let offset = place.map(|place| place.get().as_ptr() as usize - text.as_ptr() as usize);
         let line = offset.map(|offset| 1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count());
         Error::input(path, line, format!("curves.{component}.control_points[{point}]"), reason, CURVE)
     }
 }
 
-/// What an observed curve must have.
+/// Requirements on an observed curve.
 const CURVE: &str = "control points at ascending strains from 0, with finite stiffnesses in the model's unit";
 
 #[cfg(test)]
@@ -371,7 +371,7 @@ mod tests {
         assert_eq!((material.name.as_str(), material.areal_density), ("cotton-denim", 0.46));
         assert_eq!(material.curves, file.curves().unwrap());
 
-        // Another curve: it is no longer shared, its deviations go, and what was done stands there.
+        // Another curve: no longer shared, without deviations, and recorded in the provenance.
         let points = &file.curves[&weft].control_points;
         let strains: Vec<f64> = points.iter().map(|point| point.strain).collect();
         let stiffnesses = points.iter().map(|point| 2.0 * point.stiffness).collect();
@@ -386,7 +386,7 @@ mod tests {
             (visited, &["stretch-weft: doubled".into()][..])
         );
         assert_eq!(file.curves().unwrap().get(weft).unwrap().stiffnesses(), curve.stiffnesses());
-        // With points elsewhere, what was visited no longer says anything of it.
+        // With other strains, statements on the measurement no longer apply.
         file.set_curve(weft, &StiffnessCurve::constant(5.0, NegativeStrain::Green).unwrap(), "made constant");
         assert_eq!((file.curves[&weft].visited_strain, file.provenance.changes.len()), (None, 2));
     }
@@ -414,7 +414,7 @@ mod tests {
             "\"strain\": 9.0",
             "curves.stretch-weft.control_points[0]: found the first strain must be zero",
         );
-        let unit = "stiffness_n_m, where stiffness_n_per_m belongs";
+        let unit = "stiffness_n_m instead of stiffness_n_per_m";
         refused(
             "\"stiffness_n_per_m\"",
             "\"stiffness_n_m\"",

@@ -1,4 +1,4 @@
-//! A material's TOML file, as a person writes it.
+//! A hand-written material in TOML.
 
 use cloth_data::curve_file::CurveFile;
 use cloth_data::error::{Error, Result};
@@ -46,7 +46,7 @@ struct Points {
 }
 
 impl HandWritten {
-    /// The curves that the file describes, all of it checked.
+    /// The curves of the file, validated.
     pub(super) fn curves(&self, path: &Path, file: &TomlFile) -> Result<Curves> {
         let Self { name, areal_density_kg_m2: density, model, compression, curves, .. } = self;
         if name.trim().is_empty() {
@@ -57,7 +57,7 @@ impl HandWritten {
             return Err(file.invalid("areal_density_kg_m2", density.to_string(), expected));
         }
         if curves.is_empty() {
-            return Err(Error::input(path, None, "curves", "nothing", "one component's curve at least"));
+            return Err(Error::input(path, None, "curves", "nothing", "the curve of at least one component"));
         }
         let curves = curves.iter().map(|(&component, points)| {
             let negative = model.negative_strain(component, *compression);
@@ -72,7 +72,7 @@ impl HandWritten {
 }
 
 impl Points {
-    /// The file that the curve stands in, if that is how it is given.
+    /// The file of the curve's table, if the curve is given as one.
     fn table(&self, component: Component, file: &TomlFile) -> Result<Option<&Path>> {
         let Some(table) = &self.file else { return Ok(None) };
         let others = [
@@ -90,7 +90,7 @@ impl Points {
         }
     }
 
-    /// The curve over the model's own strains.
+    /// The curve over the model's own strain.
     fn curve(
         &self,
         model: Model,
@@ -98,7 +98,7 @@ impl Points {
         negative: NegativeStrain,
         file: &TomlFile,
     ) -> Result<StiffnessCurve> {
-        // Springs that bend have a strain of their own, without unit, and no curvature that would not depend on the mesh.
+        // Bending springs have a dimensionless strain of their own; its relation to curvature depends on the mesh.
         let measure = model.strain_measure(component);
         let hinge = measure.is_per_metre();
         let (places, values) = ((&self.strain, "strain"), (&self.stiffness_n_per_m, "stiffness_n_per_m"));

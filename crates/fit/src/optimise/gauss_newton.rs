@@ -5,10 +5,10 @@
 //! step:  minimise ‖J p − r‖²   subject to   A (k + p) ≥ b,   ‖D p‖ ≤ Δ          d_j = largest ‖J_j‖ so far
 //! ```
 //!
-//! A step is kept by its gain ratio, (F(k) − F(k+p)) over what the linear model promised, and the same ratio widens
-//! or narrows Δ. Near the solution steps are not cut and the method is plain Gauss–Newton. How a step is found:
-//! `region.rs`. Source: Moré, The Levenberg-Marquardt algorithm (1978). By choice the whole step is halved instead,
-//! until it is no worse: `line_search.rs`.
+//! The gain ratio, (F(k) − F(k+p)) over the decrease predicted by the linear model, decides whether a step is
+//! accepted, and widens or narrows Δ. Near the solution steps are not cut and the method is plain Gauss–Newton. The
+//! step itself: `region.rs`. Source: Moré, The Levenberg-Marquardt algorithm (1978). Optionally the whole step is
+//! halved instead until F does not grow: `line_search.rs`.
 
 mod line_search;
 mod options;
@@ -27,20 +27,20 @@ use problem::values;
 use region::{Bend, Scale, Step};
 use state::{State, accepted_state};
 
-/// A whole Gauss–Newton step that promises a smaller share of the sum of squares and still does not lower it shows
-/// noise in the residuals, not a place to go on from: with ten thousand measurements the minimum is then a hundredth
-/// of a standard error away.
+/// If a whole Gauss–Newton step predicts a smaller relative decrease and still does not lower the sum of squares, the
+/// residuals are noisy and the search ends: with ten thousand measurements the minimum is then a hundredth of a
+/// standard error away.
 const NOISE: f64 = 1e-8;
 
-/// Fits from a start; `observe` sees every step when it has been tried.
+/// Fits from a start; `observe` receives every step after its trial.
 ///
 /// A start outside the domain is first moved to the nearest point inside.
 ///
 /// # Errors
-/// Only what [`Residuals::evaluate`] hands out: a fit that does not converge says so in its status.
+/// Only errors of [`Residuals::evaluate`]; a fit that does not converge reports it in its status.
 ///
 /// # Panics
-/// Where the shapes do not fit together, or an evaluation leaves out a Jacobian that was asked for.
+/// On inconsistent shapes, or if an evaluation omits a requested Jacobian.
 pub fn minimise<P: Residuals>(
     problem: &mut P,
     start: &DVector<f64>,
@@ -65,7 +65,7 @@ pub fn minimise<P: Residuals>(
     Ok(Outcome { projected, ..outcome? })
 }
 
-/// Steps within a trust region, until one of the tolerances is met.
+/// Steps within a trust region, until a tolerance is met.
 fn within_region<P: Residuals>(
     problem: &mut P,
     mut state: State,
@@ -75,11 +75,11 @@ fn within_region<P: Residuals>(
 ) -> Result<Outcome, P::Error> {
     let mut scale = Scale::new(&state.jacobian);
     let mut radius = options.initial_radius * scale.norm_or_one(&state.point);
-    // What is too little to go on for is too little to fail for.
+    // A decrease too small to continue for is too small to fail for.
     let noise = NOISE.max(options.gain_tolerance);
     let mut bend: Option<Bend> = None;
     let mut iterations = Vec::new();
-    // Since the last accepted step: how many were rejected, and why the last of them could not be evaluated.
+    // Since the last accepted step: number of rejections, and the error of the last evaluation, if it failed.
     let (mut rejected, mut failure) = (0, None);
 
     let status = loop {
@@ -94,7 +94,7 @@ fn within_region<P: Residuals>(
         let length = scale.norm(&step.step);
         let short = length <= options.step_tolerance * share;
         let solved = step.status == StepStatus::Optimal;
-        // What is not solved proves no minimum.
+        // An inaccurate step proves no minimum.
         if short && !step.cut && !solved {
             break Status::StepFailed { status: step.status };
         }
@@ -136,7 +136,7 @@ fn within_region<P: Residuals>(
                     Ok(next) => next,
                     Err(reason) => break Status::Stalled { reason: Some(reason) },
                 };
-                // The bend of residuals is in the step already.
+                // The curvature of robust residuals is in the step already.
                 bend = problem.robust().is_none().then(|| Bend::between(&state, &next));
                 state = next;
                 scale.widen(&state.jacobian);
@@ -158,7 +158,7 @@ fn within_region<P: Residuals>(
     Ok(Outcome::at(state.point, state.residual, state.jacobian, status, iterations))
 }
 
-/// The start itself, or the nearest point that meets the inequalities.
+/// The start itself, or the nearest point that satisfies the inequalities.
 fn inside(start: &DVector<f64>, domain: &Domain) -> Result<DVector<f64>, StepStatus> {
     let n = start.len();
     let slack = &domain.rows * start - &domain.bounds;
@@ -174,8 +174,8 @@ fn inside(start: &DVector<f64>, domain: &Domain) -> Result<DVector<f64>, StepSta
     }
 }
 
-/// Gain over promise. Where the model promises nothing beyond rounding (a step along which the data see nothing) any
-/// point that is no worse will do.
+/// Gain over prediction. If the prediction is within rounding (a step along which the data see nothing), any point
+/// that is no worse is accepted.
 fn gain_ratio(gain: f64, promised: f64) -> f64 {
     let rounding = 1e-14;
     match promised <= rounding {
@@ -185,10 +185,10 @@ fn gain_ratio(gain: f64, promised: f64) -> f64 {
     }
 }
 
-/// By how much to shorten the step that just disappointed: to the minimum of the parabola through both ends and the
-/// slope at the start, kept between a tenth and a half.
+/// Factor that shortens a rejected step: to the minimum of the parabola through both ends and the slope at the start,
+/// kept between a tenth and a half.
 fn narrowed(gain: Option<f64>, promised: f64) -> f64 {
-    // With the slope of an undamped step, twice its promise π: F(t) = 1 − 2π t + (2π − gain) t².
+    // With the slope of an undamped step, twice its predicted gain π: F(t) = 1 − 2π t + (2π − gain) t².
     gain.map_or(0.25, |gain| (promised / (2.0 * promised - gain)).clamp(0.1, 0.5))
 }
 

@@ -4,11 +4,11 @@
 //! minimise ½‖J p − y‖²   subject to   A p ≥ b,   lower ≤ p ≤ upper
 //! ```
 //!
-//! The columns are scaled to unit length, the system is reduced to a triangle, an interior-point method finds which
-//! rows hold the solution, and with these held it is solved again to rounding. What "solved" means is measured here,
-//! not taken over: see [`Kkt`]. No ridge is ever added. Directions that the data do not see are left to a second
-//! objective (smoothness) and a third (least length), each minimised only among the minimisers of the one before, so
-//! that neither moves what the data do see, not even where rows are active.
+//! The columns are scaled to unit length, the system is reduced to a triangle, an interior-point method finds the
+//! active rows, and the problem is solved again to rounding with these held. Optimality is measured here, not taken
+//! from the method: see [`Kkt`]. No ridge is added. Directions that the data do not see are left to a second
+//! objective (smoothness) and a third (least length), each minimised only among the minimisers of the previous one,
+//! so that neither changes the fit to the data, even with active rows.
 
 mod active_set;
 mod dense;
@@ -25,8 +25,8 @@ use nalgebra::{DMatrix, DVector};
 use scaled::Scaled;
 use std::fmt;
 
-/// The largest [`Kkt`] figure that still counts as solved. Polished solutions lie near 1e-15, interior-point ones
-/// near 1e-8.
+/// The largest [`Kkt`] figure that counts as solved. Polished solutions lie near 1e-15, interior-point ones near
+/// 1e-8.
 pub const OPTIMAL: f64 = 1e-10;
 
 /// A least-squares problem under linear inequalities.
@@ -36,7 +36,7 @@ pub struct LeastSquares {
     pub jacobian: DMatrix<f64>,
     /// y.
     pub target: DVector<f64>,
-    /// A, dense, one inequality a row.
+    /// A, dense, one inequality per row.
     pub rows: DMatrix<f64>,
     /// b; −∞ switches a row off.
     pub bounds: DVector<f64>,
@@ -44,11 +44,11 @@ pub struct LeastSquares {
     pub lower: DVector<f64>,
     /// Upper side of the box, +∞ for none.
     pub upper: DVector<f64>,
-    /// What to prefer where the data see nothing; without it the shortest step (in scaled unknowns).
+    /// Preference where the data see nothing; without it the shortest step (in scaled unknowns).
     pub smoothing: Option<Smoothing>,
 }
 
-/// Smoothness of the total point k + p, asked for only along directions that the data do not see.
+/// Smoothness of the total point k + p, only along directions that the data do not see.
 ///
 /// ```text
 /// minimise ‖S (k + p)‖   among the minimisers of ‖J p − y‖       Nᵀ Sᵀ S (k + p) = 0 where no row is active
@@ -57,11 +57,11 @@ pub struct LeastSquares {
 pub struct Smoothing {
     /// S, for instance second differences.
     pub roughness: DMatrix<f64>,
-    /// k, the point that p is a step from; zero if p is the point itself.
+    /// k, the start of the step p; zero if p is the point itself.
     pub point: DVector<f64>,
 }
 
-/// Where a solution rests: on a row of A or on a side of the box.
+/// A bound on the solution: a row of A or a side of the box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum Bound {
     /// This row of A.
@@ -72,24 +72,24 @@ pub enum Bound {
     Upper(usize),
 }
 
-/// An inequality that holds the solution.
+/// An active inequality.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Active {
-    /// Which.
+    /// The bound.
     pub bound: Bound,
-    /// How much ½‖J p − y‖² falls per unit by which the bound is relaxed; 0 for one that only a direction without
-    /// data leans on.
+    /// Decrease of ½‖J p − y‖² per unit by which the bound is relaxed; 0 for a bound that only the secondary
+    /// objectives press on.
     pub multiplier: f64,
 }
 
-/// How a solve ended.
+/// Status of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Status {
     /// All conditions of optimality hold to [`OPTIMAL`].
     Optimal,
-    /// They hold only to this.
+    /// They hold only to this accuracy.
     Inaccurate {
-        /// The largest figure.
+        /// The largest KKT figure.
         kkt: f64,
     },
     /// The inequalities contradict one another.
@@ -103,7 +103,7 @@ impl fmt::Display for Status {
         match self {
             Self::Optimal => write!(f, "solved"),
             Self::Inaccurate { kkt } => {
-                write!(f, "the conditions of optimality hold only to {kkt:.1e}, wanted {OPTIMAL:.0e}")
+                write!(f, "the optimality conditions hold only to {kkt:.1e}, not to {OPTIMAL:.0e}")
             }
             Self::Infeasible => write!(f, "the inequalities contradict one another"),
             Self::NotFinite => write!(f, "the least-squares problem contains NaN or infinite numbers"),
@@ -111,21 +111,21 @@ impl fmt::Display for Status {
     }
 }
 
-/// What a solve found.
+/// Result of a solve.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Solution {
     /// p; zero if the problem is not finite.
     pub point: DVector<f64>,
-    /// Whether to believe it.
+    /// Status of the solve.
     pub status: Status,
-    /// What holds it, in the order rows, lower sides, upper sides.
+    /// Active bounds, in the order rows, lower sides, upper sides.
     pub active: Vec<Active>,
-    /// The conditions of optimality, measured at `point`.
+    /// The optimality conditions, measured at `point`.
     pub kkt: Kkt,
     /// Singular values of the column-scaled J, largest first.
     pub singular_values: DVector<f64>,
-    /// How many of them lie above [`RANK_TOLERANCE`] times the largest.
+    /// Number of singular values above [`RANK_TOLERANCE`] times the largest.
     pub rank: usize,
     /// Directions of p that the data do not see: n×(n − rank), columns of unit length.
     pub null_vectors: DMatrix<f64>,
@@ -148,10 +148,10 @@ impl LeastSquares {
         }
     }
 
-    /// Solves it.
+    /// Solves the problem.
     ///
     /// # Panics
-    /// Where the shapes do not fit together.
+    /// On inconsistent shapes.
     pub fn solve(&self) -> Solution {
         let n = self.jacobian.ncols();
         assert_eq!(
@@ -228,7 +228,7 @@ impl LeastSquares {
     }
 
     /// Moves a (scaled) minimiser of the data within their null space: first to the smoothest point, then to the
-    /// shortest step. Returns the scaled rows met there.
+    /// shortest step. Returns the scaled rows met on the way.
     fn settle(&self, data: &Scaled, point: &mut DVector<f64>) -> Vec<usize> {
         let n = data.columns();
         let mut basis = data.spectrum.right.columns(data.rank(), n - data.rank()).into_owned();
@@ -240,7 +240,8 @@ impl LeastSquares {
         let length = (DMatrix::identity(n, n), DVector::zeros(n));
         let mut leaning = Vec::new();
         for (matrix, target) in smoothness.into_iter().chain([length]) {
-            // A row that the basis does not move cannot be met, and one that rounding left violated must not push.
+            // Skips rows that the basis does not move, which cannot be met, and rows violated by rounding, which must
+            // not push.
             let mut along = &data.rows * &basis;
             along.row_iter_mut().filter(|row| row.norm() <= 1e-12).for_each(|mut row| row.fill(0.0));
             let room = DVector::from_fn(along.nrows(), |row, _| data.slack(row, point).max(0.0));
@@ -262,8 +263,8 @@ impl LeastSquares {
     }
 }
 
-/// The part of a step up to the first row that it violates beyond rounding: a preference that could not be solved to the
-/// end must not cost a row.
+/// The part of a step up to the first row that it violates beyond rounding: an inexact secondary objective must not
+/// break a row.
 fn part_within(data: &Scaled, point: &DVector<f64>, step: &DVector<f64>) -> f64 {
     let end = point + step;
     let violated = (0..data.rows.nrows()).filter(|&row| data.violation(row, &end) > 0.1 * OPTIMAL);

@@ -1,4 +1,4 @@
-//! Residuals that do not let a few outliers rule.
+//! Robust residuals: limit the weight of outliers.
 //!
 //! ```text
 //! ρ(r) = 2c² (√(1 + (r/c)²) − 1)      pseudo-Huber: r² where small, 2c|r| where large
@@ -8,7 +8,7 @@
 //!
 //! Source: Hartley and Zisserman, Multiple View Geometry (2004), A6.8; Triggs et al., Bundle adjustment (2000), 4.3.
 
-/// Residuals up to about this size count in full.
+/// A pseudo-Huber function: residuals up to about its limit keep full weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Robust {
     /// c, in the units of the residuals.
@@ -25,15 +25,15 @@ impl Robust {
         (residual * share, 1.0 / (root * share))
     }
 
-    /// √(ρ″/2) over dr̃/dr, of a residual that was bent to r̃: a row of the Jacobian times this, and its residual over this,
-    /// have the slope of Σ r̃² and its whole curvature in r.
+    /// √(ρ″/2) over dr̃/dr for a transformed residual r̃. A row of the Jacobian times this, with its residual over
+    /// this, has the slope of Σ r̃² and its full curvature in r.
     pub fn curvature(&self, bent: f64) -> f64 {
         // ρ = r̃² gives √(1 + (r/c)²) without r.
         let root = 1.0 + 0.5 * (bent / self.limit).powi(2);
         (2.0 / (root * (root + 1.0))).sqrt()
     }
 
-    /// Mean of ρ over noise of standard deviation 1, by the trapezoidal rule: what is left of its mean square.
+    /// Mean of ρ over noise of standard deviation 1, by the trapezoidal rule: the remaining mean square.
     pub fn mean_of_noise(&self) -> f64 {
         let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
         let step = 0.05;

@@ -1,19 +1,20 @@
-//! How sure a fitted curve is: noise told apart from misfit, covariance of the control values, bands on the stress.
+//! Uncertainty of a fitted curve: noise and misfit, covariance of the control values, bands on the stress.
 //!
 //! ```text
 //! C = [σ² + (s² − σ²) n/p] (JᵀJ)⁻¹        band of σ(ε):  ± t √(wᵀ C w),   w = ∂σ/∂k
 //! ```
 //!
-//! σ² is the noise of a measurement, s² = ‖r‖²/(n − p) what is left of n measurements after p parameters. Noise errs
-//! afresh in every measurement, so it averages out. Misfit (a curve with too few points, hysteresis, a wrong model) errs
-//! alike in neighbours: n measurements then tell no more than p, and the factor n/p says so. Only as much of it enters as s²
-//! is above what chance makes of σ² in 99 of 100 fits: a band does not leap where a misfit is first told from chance.
+//! σ² is the noise of a measurement, s² = ‖r‖²/(n − p) the residual variance of n measurements after p parameters.
+//! Noise is independent between measurements, so it averages out. Misfit (too few control points, hysteresis, a wrong
+//! model) is shared by neighbouring measurements: n of them then tell no more than p, hence the factor n/p. Only the
+//! excess of s² over its 99 % quantile under noise alone counts as misfit, so that a band does not jump when misfit
+//! is first detected.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-/// Relative size of an eigenvalue of the scaled JᵀJ below which the data do not see its direction: a standard deviation a
-/// hundred thousand times that of the best seen direction is no knowledge.
+/// Relative eigenvalue of the scaled JᵀJ below which the data do not see a direction: its standard deviation would be
+/// a hundred thousand times that of the best direction.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Standard normal quantiles of 97.5 % and 99 %.
@@ -25,27 +26,27 @@ const Z_99: f64 = 2.326_347_874;
 pub struct Scatter {
     /// Standard deviation of one measurement.
     pub noise: f64,
-    /// The noise was given; otherwise it was estimated from differences between successive residuals.
+    /// True if the noise was given; otherwise it was estimated from differences between successive residuals.
     pub known: bool,
     /// s, root mean square of the residual per degree of freedom.
     pub residual: f64,
-    /// Misfit √(s² − qσ²), q what chance makes of the noise in 99 of 100 fits; 0 where s² is no more than that.
+    /// Misfit √(s² − qσ²), with q the 99 % quantile of s²/σ² under noise alone; 0 if s² is lower.
     pub misfit: f64,
     /// Measurements that a parameter can move.
     pub measurements: usize,
     /// Measurements less parameters.
     pub freedom: usize,
-    /// Mean square that noise alone leaves, over σ²: 1, less where large residuals count less.
+    /// Mean square of noise alone, over σ²: 1, or less if large residuals have less weight.
     pub expected: f64,
 }
 
 impl Scatter {
-    /// Judges the residuals of a fit.
+    /// Splits the residuals of a fit into noise and misfit.
     ///
-    /// * `residual` — one entry a measurement
-    /// * `jacobian` — its rows; those of zeros are of what no parameter can move, and are left out, small ones are not
-    /// * `tracks` — which measurements follow one another, in order
-    /// * `known` — the noise, if it was given
+    /// * `residual` — one entry per measurement
+    /// * `jacobian` — its rows; zero rows, which no parameter moves, are omitted, small ones are not
+    /// * `tracks` — consecutive measurements, in order
+    /// * `known` — the noise, if given
     pub fn new(
         residual: &DVector<f64>,
         jacobian: &DMatrix<f64>,
@@ -63,17 +64,17 @@ impl Scatter {
             Some(noise) => noise * noise,
             None => successive_variance(residual, tracks, &informative).unwrap_or(mean_square),
         };
-        // s²/σ² that chance alone exceeds in one of a hundred fits.
+        // The 99 % quantile of s²/σ² under noise alone.
         let chance = match known {
             Some(_) => chi_square(freedom.max(1) as f64, Z_99) / freedom.max(1) as f64,
             None => {
-                // Von Neumann's ratio: its deviation from 1 has this spread for white noise.
+                // Von Neumann's ratio: spread of its deviation from 1 for white noise.
                 let n = measurements as f64;
                 1.0 / (1.0 - Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()).max(f64::MIN_POSITIVE)
             }
         };
         let excess = if freedom > 0 { (mean_square - chance * variance).max(0.0) } else { 0.0 };
-        // Noise that was estimated cannot exceed what is left.
+        // Estimated noise cannot exceed the residual.
         let variance = if known.is_none() && excess == 0.0 { mean_square } else { variance };
         let misfit = excess.sqrt();
         Self {
@@ -89,7 +90,7 @@ impl Scatter {
 }
 
 impl Scatter {
-    /// True if less is left than the given noise leaves in one of a hundred fits: it was declared too large.
+    /// True if the residual is below its 1 % quantile under the given noise: that noise is too large.
     pub fn noise_is_overstated(&self) -> bool {
         let freedom = self.freedom as f64;
         self.known
@@ -98,22 +99,22 @@ impl Scatter {
                 < chi_square(freedom, -Z_99) * self.expected * self.noise.powi(2)
     }
 
-    /// The same in other units.
+    /// The same, converted to other units.
     pub fn times(self, unit: f64) -> Self {
         Self { noise: self.noise * unit, residual: self.residual * unit, misfit: self.misfit * unit, ..self }
     }
 }
 
-/// Variance of a residual after a fit of so many parameters: 1, in units of a noise that is known, unless less is left than
-/// that leaves in one of a hundred fits; else what is left per degree of freedom.
+/// Variance of a residual after a fit of `parameters` parameters. If the noise is known: 1, in its units, unless the
+/// sum of squares is below its 1 % quantile. Otherwise: the sum of squares per degree of freedom.
 pub(crate) fn variance_left(residual: &DVector<f64>, parameters: usize, known: bool) -> f64 {
     let freedom = residual.len().saturating_sub(parameters).max(1) as f64;
     let sum = residual.norm_squared();
     if known && sum >= chi_square(freedom, -Z_99) { 1.0 } else { sum / freedom }
 }
 
-/// Variance from differences of neighbours, in which a smooth misfit cancels; `None` where nothing has a neighbour. A
-/// reading that was only repeated tells nothing of noise.
+/// Variance from differences of neighbours, in which a smooth misfit cancels; `None` if no measurement has a
+/// neighbour. Repeated readings carry no information on noise and are skipped.
 fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informative: &[bool]) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for track in tracks {
@@ -128,7 +129,7 @@ fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informati
 
 /// Quantile of the χ² distribution (Wilson and Hilferty 1931).
 ///
-/// * `z` — the standard normal one
+/// * `z` — the standard normal quantile
 fn chi_square(freedom: f64, z: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     freedom * (1.0 - spread + z * spread.sqrt()).max(0.0).powi(3)
@@ -149,18 +150,18 @@ fn student_975(freedom: f64) -> f64 {
     z + terms[0] / freedom + terms[1] / freedom.powi(2) + terms[2] / freedom.powi(3)
 }
 
-/// What the data say of the control values.
+/// Covariance of the control values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Covariance {
-    /// Covariance of the control values, over what the data see.
+    /// Covariance matrix, over the directions that the data see.
     pub matrix: DMatrix<f64>,
-    /// (JᵀJ)⁻¹ over what the data see.
+    /// (JᵀJ)⁻¹, over the same directions.
     inverse: DMatrix<f64>,
-    /// How many directions the data see.
+    /// Number of directions that the data see.
     pub rank: usize,
-    /// Directions that they do not see, as columns.
+    /// Directions that the data do not see, as columns.
     pub unseen: DMatrix<f64>,
-    /// Standard deviations to either side of a 95 % band; `None` where nothing is left to judge the noise by.
+    /// Half-width of a 95 % band in standard deviations; `None` without degrees of freedom to estimate the noise.
     quantile: Option<f64>,
 }
 
@@ -193,7 +194,7 @@ impl Covariance {
         }
         let unseen =
             if unseen.is_empty() { DMatrix::zeros(parameters, 0) } else { DMatrix::from_columns(&unseen) };
-        // What was estimated from few residuals is itself uncertain.
+        // Noise estimated from few residuals is itself uncertain.
         let quantile = match scatter.freedom {
             _ if scatter.known && scatter.misfit == 0.0 => Some(Z_975),
             0 => None,
@@ -202,22 +203,22 @@ impl Covariance {
         Self { matrix: &inverse * variance, inverse, rank, unseen, quantile }
     }
 
-    /// G = (JᵀJ)⁻¹ Jᵀ J_q: what an error of other parameters does to these.
+    /// G = (JᵀJ)⁻¹ Jᵀ J_q: effect of other parameters' errors on these.
     pub fn gain(&self, jacobian: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
         &self.inverse * (jacobian.transpose() * other)
     }
 
-    /// Adds what comes from the errors of other parameters: G Cov(q) Gᵀ.
+    /// Adds the errors of other parameters: G Cov(q) Gᵀ.
     pub fn carry(&mut self, gain: &DMatrix<f64>, covariance: &DMatrix<f64>) {
         self.matrix += gain * covariance * gain.transpose();
     }
 
-    /// Adds an error of a known direction, whose size is within ± 1 in 95 of 100 cases.
+    /// Adds an error along a known direction, within ± 1 times it in 95 of 100 cases.
     pub fn widen(&mut self, direction: &DVector<f64>) {
         self.matrix += direction * direction.transpose() / Z_975.powi(2);
     }
 
-    /// Half the width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave nothing to judge it by.
+    /// Half-width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave no degrees of freedom.
     pub fn half_band(&self, weights: &DVector<f64>) -> Option<f64> {
         let hidden = (self.unseen.transpose() * weights).norm();
         if hidden > 1e-6 * weights.norm() {
@@ -226,7 +227,7 @@ impl Covariance {
         Some(self.quantile? * (weights.transpose() * &self.matrix * weights)[0].max(0.0).sqrt())
     }
 
-    /// Standard deviation of each control value; `None` for one that the data do not see.
+    /// Standard deviation of each control value; `None` if the data do not see it.
     pub fn standard_deviations(&self) -> Vec<Option<f64>> {
         (0..self.matrix.ncols())
             .map(|i| {
@@ -236,13 +237,13 @@ impl Covariance {
             .collect()
     }
 
-    /// Half the 95 % band of each control value; `None` for one that the data do not see.
+    /// Half-width of the 95 % band of each control value; `None` if the data do not see it.
     pub fn half_bands(&self) -> Vec<Option<f64>> {
         let band = |deviation: Option<f64>| Some(self.quantile? * deviation?);
         self.standard_deviations().into_iter().map(band).collect()
     }
 
-    /// Correlation of each control value with each; `None` with one that the data do not see.
+    /// Correlation matrix of the control values; `None` for pairs with one that the data do not see.
     pub fn correlations(&self) -> Vec<Vec<Option<f64>>> {
         let correlation = |i: usize, j: usize| {
             let size = (self.matrix[(i, i)] * self.matrix[(j, j)]).sqrt();
@@ -253,10 +254,10 @@ impl Covariance {
     }
 }
 
-/// Eigenvalues and vectors of JᵀJ with columns of unit length, and the lengths they had.
+/// Eigenvalues and eigenvectors of JᵀJ with columns of unit length, and the original lengths.
 ///
-/// The matrix is small; its eigenvalues are squared singular values, and what lies below 1e-10 of the largest is seen at
-/// the precision of no instrument.
+/// The matrix is small. Its eigenvalues are squared singular values; below 1e-10 of the largest, no instrument is
+/// precise enough.
 fn gram(jacobian: &DMatrix<f64>) -> (SymmetricEigen<f64, Dyn>, DVector<f64>) {
     let norms = jacobian.column_iter().map(|column| if column.norm() > 0.0 { column.norm() } else { 1.0 });
     let norms = DVector::from_iterator(jacobian.ncols(), norms);

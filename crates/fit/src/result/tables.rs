@@ -5,8 +5,8 @@ use crate::stage::report::{Sample, SequenceReport, StageReport};
 use cloth_data::curve_file::{ENGINEERING, columns, engineering};
 use std::fmt::Write;
 
-/// 201 rows; the band's cells are empty where the data do not see the curve, its columns absent where they see none of it. Beside Green strain and its
-/// stress stand engineering strain and nominal stress.
+/// The table of a curve, 201 rows. Band cells are empty where the data do not see the curve; without any band the
+/// columns are omitted. Curves over Green strain also list engineering strain and nominal stress.
 pub(super) fn curve_table(stage: &StageReport) -> String {
     let curve = &stage.curve;
     let banded = curve.samples.iter().any(|sample| sample.band.is_some());
@@ -33,7 +33,7 @@ pub(super) fn curve_table(stage: &StageReport) -> String {
     table
 }
 
-/// One row a sequence; what was not measured is empty.
+/// One row per sequence; cells without a measurement are empty.
 pub(super) fn residual_table(report: &FitReport) -> String {
     let mut table = String::from(
         "sequence,kind,rms_force_n,largest_force_n,rms_position_m,frames,frames_left_out,iterations,seconds\n",
@@ -56,12 +56,13 @@ pub(super) fn residual_table(report: &FitReport) -> String {
     table
 }
 
-/// A number, or nothing.
+/// A number, or an empty cell.
 pub(super) fn cell(value: Option<f64>) -> String {
     value.map(|value| value.to_string()).unwrap_or_default()
 }
 
-/// Every measured force component (its direction x, y, z in the specimen's frame) beside its simulation, for plots.
+/// Every measured force component (its direction x, y, z in the specimen's frame) with its simulated value, for
+/// plots.
 pub(super) fn force_table<'r>(sequences: impl Iterator<Item = &'r SequenceReport>) -> String {
     let mut table = String::from("sequence,frame,clip,x,y,z,extension,measured_n,simulated_n\n");
     for sequence in sequences {

@@ -1,4 +1,4 @@
-//! The folder of a validation: `validation.json`, `validation.csv`, `measures.csv`, `forces.csv`.
+//! The result folder of a validation: `validation.json`, `validation.csv`, `measures.csv`, `forces.csv`.
 
 use super::tables::{cell, force_table};
 use crate::judge::validation::{MeasureRow, Validated, Validation};
@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The version of `validation.json`.
+/// The version of the format of `validation.json`.
 const SCHEMA: &str = "fit-cloth/validation/1";
 
 /// `validation.json`.
@@ -25,7 +25,7 @@ struct File<'a> {
     program: &'static str,
     model: Model,
     variant: Variant,
-    /// Whose curves, and whose measurements.
+    /// Fabric of the curves, and fabric of the measurements.
     curves_of: &'a str,
     measured_on: &'a str,
     #[serde(skip_serializing_if = "<[Component]>::is_empty")]
@@ -65,10 +65,10 @@ struct Dropped<'a> {
     why: String,
 }
 
-/// Writes a validation into a folder that exists, and returns the text of `validation.json`.
+/// Writes a validation into an existing folder; returns the text of `validation.json`.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// Errors of the file system.
 pub fn write_validation(
     folder: &Path,
     set: &MeasurementSet,
@@ -105,7 +105,7 @@ fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) 
         factorisations: prediction.counters.factorisations,
         interventions: &prediction.interventions,
     };
-    // Strings and finite numbers: nothing here can fail to be JSON.
+    // Strings and finite numbers only: serialisation cannot fail.
     serde_json::to_string_pretty(&file).map(|text| text + "\n").unwrap_or_default()
 }
 
@@ -123,7 +123,7 @@ fn entry<'a>(validation: &Validation, sequence: &'a Validated) -> Entry<'a> {
     }
 }
 
-/// One row a sequence, those without an equilibrium last; what was not measured is empty.
+/// One row per sequence, those without an equilibrium last; cells without a measurement are empty.
 fn sequence_table(validation: &Validation) -> String {
     let mut table = String::from(
         "sequence,kind,frames,frames_left_out,frames_multi_stable,rms_force_n,largest_force_n,rms_position_m,\
@@ -154,7 +154,7 @@ fn sequence_table(validation: &Validation) -> String {
     table
 }
 
-/// Every frame's measure, measured and simulated.
+/// The aggregate measure of every frame, measured and simulated.
 fn measure_table(validation: &Validation) -> String {
     let mut table = String::from("sequence,frame,extension,measure,unit,measured,simulated,multi_stable\n");
     for sequence in &validation.sequences {
@@ -171,7 +171,7 @@ fn measure_table(validation: &Validation) -> String {
     table
 }
 
-/// A measure's name as in JSON.
+/// A measure's name in JSON.
 fn key(measure: Summary) -> String {
     measure.to_string().replace(' ', "-")
 }

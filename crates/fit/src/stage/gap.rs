@@ -1,14 +1,14 @@
-//! A start from the equilibrium gap: one linear least squares, no simulation.
+//! A start from the equilibrium gap: one linear least-squares problem, no simulation.
 //!
 //! Stress is linear in the control values, and between clips the cloth is close to their blended motion x̃. So is the
-//! virtual work of the stresses there under each clip's field φ, which balances that clip's force alone:
+//! virtual work of the stresses there in each clip's field φ, which balances that clip's force alone:
 //!
 //! ```text
 //! minimise over k   Σ_frames Σ_clips | Σ_n φ_c(n) g_n(x̃, k) − F̃_c |²     subject to the curve's constraints
 //! ```
 //!
-//! Measured shapes would serve too, but their noise biases it. Either way it is a start, not a result. Source: virtual fields and equilibrium gap, Grédiac et
-//! al. 2006; Claire et al. 2004.
+//! Measured shapes would do as well, but their noise biases the result. Either way it is a start, not a result.
+//! Source: virtual fields and equilibrium gap, Grédiac et al. 2006; Claire et al. 2004.
 
 use crate::equilibria::{parameter_columns, without_rounding};
 use crate::optimise::gauss_newton::Domain;
@@ -18,8 +18,9 @@ use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Control values at the curve's strains that balance the measured forces on the blended shapes best, if the curve bore all
-/// the load: known yarns that hardly give would be stretched there as they never are.
+/// Control values at the curve's strains that best balance the measured forces on the blended shapes, as if the curve
+/// carried all the load. Known yarn curves are left out: nearly inextensible yarns would be overstretched on those
+/// shapes.
 pub fn start(
     replicas: &[Replica],
     fitted: &[Component],

@@ -1,9 +1,9 @@
-//! Curves grow: one control point each, then twice as many segments each time, as long as that pays.
+//! Growth of a curve: starts with one control point and doubles the number of segments while that pays.
 //!
-//! A number of points that does not pay is passed over once: what bends down and up again, as many knits do, is met by
-//! a line no better than by a constant, but by three or five points. Two in a row that do not pay are the end.
+//! One number of points that does not pay is tolerated: a curve that bends down and up again, as of many knits, is
+//! fitted no better by a line than by a constant, but by three or five points. Two in a row end the growth.
 //!
-//! Source: Miguel et al. 2012, §5.2; differs in the second try, unless [`GrowthRule`](super::GrowthRule) says otherwise.
+//! Source: Miguel et al. 2012, §5.2; the second try is ours, unless [`GrowthRule`](super::GrowthRule) says otherwise.
 
 use super::growth_rule::SIGNIFICANT;
 use super::level::Level;
@@ -17,46 +17,46 @@ use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
 use std::time::Instant;
 
-/// Residuals up to this share of what is compared are rounding, and none is better than another.
+/// Residuals up to this share of the compared values are rounding; none is better than another.
 const ROUNDING: f64 = 1e-12;
 
-/// Residuals are whitened anew once at the minimum of every level, which is compared with others; of the one that is kept
-/// until that moves by less than this share, or so often.
+/// Whitening is renewed once at the minimum of every level, for comparison with other levels; for the level that is
+/// kept, until the minimum moves by less than this share, or at most this often.
 const SETTLED: f64 = 1e-5;
 const MOST_WHITENINGS: usize = 4;
 
-/// Curves that were grown.
+/// Grown curves.
 pub struct Growth {
     /// The curves.
     pub unknowns: Unknowns,
     /// The fit with its control points.
     pub outcome: Outcome,
-    /// Its constraints.
+    /// Constraints on the curve.
     pub domain: Domain,
-    /// Every level, those too that did not pay and were not kept.
+    /// Every level, including those that did not pay and were not kept.
     pub levels: Vec<Level>,
-    /// Why it ended.
+    /// Reason for the end of the growth.
     pub stopped: String,
 }
 
-/// Where a constant stiffness twice as large would change less than this share of the residual, more points would only
-/// wander: ring-2 springs that lean on softer yarns.
+/// If doubling a constant stiffness changes less than this share of the residual, more points would be undetermined,
+/// as for ring-2 springs that depend on softer yarns.
 const FELT: f64 = 0.1;
 
-/// Fits with more and more control points, from the simulation's curves on.
+/// Fits with an increasing number of control points, starting with the simulation's curve.
 ///
-/// * `lowest_tangents` — dσ/dε of each unknown curve is kept above it, N/m
+/// * `lowest_tangent` — lower limit of dσ/dε, N/m
 ///
 /// # Errors
-/// Control points that make no curve.
+/// Control points that do not form a valid curve.
 pub fn grow(
     simulation: &mut Simulation<'_>,
     settings: &Settings,
     lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
 ) -> Result<Growth> {
-    // A curve with as many points as there are frames meets them all and says nothing; without a known noise one frame
-    // more is needed to judge it by.
+    // A curve with as many points as frames fits them all and means nothing; with unknown noise, one more frame is
+    // needed to judge it.
     let spare = usize::from(!simulation.noise_is_known());
     let carriers = match simulation.task().objective {
         Objective::Forces => simulation.settled().count(),
@@ -76,13 +76,13 @@ pub fn grow(
         unknowns = unknowns.with_values(&outcome.point)?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
         if points == 1 && !felt {
-            let stopped = "one stiffness hardly changes what is compared".to_string();
+            let stopped = "a constant stiffness hardly changes the simulated values".to_string();
             return Ok(Growth { unknowns, outcome, domain, levels, stopped });
         }
         let all = points >= most;
         let noise = variance_left(&outcome.residual, unknowns.len(), simulation.noise_is_known());
         let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
-        // Points that the data do not tell apart fit noise: they must gain what chance does not give so many.
+        // Points that the data do not separate fit noise: their gain must exceed that of as many points by chance.
         let told_apart = Covariance::rank_of(&outcome.jacobian) == unknowns.len();
         let by_chance = |added: usize| 0.5 * added as f64 * SIGNIFICANT * noise;
         let pays = |before: f64, after: f64, added: usize| {
@@ -103,11 +103,9 @@ pub fn grow(
         };
         if all || tries == rule.tries {
             let stopped = match tries {
-                0 if settings.variant.is_linear() => {
-                    "one stiffness is all that a linear variant has".to_string()
-                }
+                0 if settings.variant.is_linear() => "a linear variant has one stiffness".to_string(),
                 0 if points < settings.points => {
-                    format!("the frames carry no more than {points} control points")
+                    format!("the frames support no more than {points} control points")
                 }
                 0 => format!("all {points} control points are in use"),
                 _ => format!(
@@ -132,10 +130,10 @@ pub fn grow(
     }
 }
 
-/// Fits again with as many control points as the simulation's curves have, spread over what is visited now.
+/// Fits again with the same number of control points, spread over the strains visited now.
 ///
 /// # Errors
-/// Control points that make no curve.
+/// Control points that do not form a valid curve.
 pub fn refit(
     simulation: &mut Simulation<'_>,
     settings: &Settings,
@@ -147,13 +145,13 @@ pub fn refit(
     let (outcome, domain, level) =
         fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangents, watch)?;
     let unknowns = start.with_values(&outcome.point)?;
-    let stopped = format!("all {points} control points of the pass before are fitted again");
+    let stopped = format!("all {points} control points of the previous pass are fitted again");
     Ok(Growth { unknowns, outcome, domain, levels: vec![level], stopped })
 }
 
-/// One level: a fit with a fixed number of control points.
+/// Fits one level: a fixed number of control points.
 ///
-/// * `whitenings` — residuals are whitened anew so often at most
+/// * `whitenings` — maximum number of renewed whitenings
 fn fit_level(
     simulation: &mut Simulation<'_>,
     unknowns: &Unknowns,
@@ -199,7 +197,8 @@ fn fit_level(
         }
     };
     let mut outcome = fit_from(simulation, &unknowns.values());
-    // How errors of what is held enter depends on the shapes: those of the minimum count, wherever the fit started.
+    // The effect of position errors of held lines depends on the shapes: use those at the minimum, independent of the
+    // start.
     for _ in 0..whitenings {
         if !simulation.is_whitened() || outcome.residual.is_empty() {
             break;
@@ -234,12 +233,12 @@ fn resampled(simulation: &Simulation<'_>, unknowns: &Unknowns, points: usize) ->
     unknowns.iter().map(resampled).collect::<Result<_>>().map(Unknowns::new)
 }
 
-/// One, two, three, five, nine …: every segment is halved, up to the most that is wanted.
+/// One, two, three, five, nine …: halves every segment, up to the maximum.
 fn next_points(points: usize, most: usize) -> usize {
     if points == 1 { 2 } else { 2 * points - 1 }.min(most)
 }
 
-/// The constraints of a curve, and smoothness where data see nothing.
+/// The constraints of a curve, with smoothness where the data see nothing.
 ///
 /// # Errors
 /// Strains that no curve can have.

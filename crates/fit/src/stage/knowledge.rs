@@ -1,11 +1,11 @@
-//! What the stages of a fit have found so far: curves, and how their errors hang together.
+//! The curves that the stages have found so far, with the joint covariance of their errors.
 //!
 //! ```text
 //! a stage fits k with the curves q known:   k̂ errs by  −G δq + noise,   G = (JᵀJ)⁻¹ Jᵀ J_q
 //! Cov(k) = C + G Cov(q) Gᵀ,   Cov(k, q) = −G Cov(q)
 //! ```
 //!
-//! So a later band is wider by what earlier stages do not know.
+//! A later band therefore includes the uncertainty of earlier stages.
 
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Curves};
@@ -19,7 +19,7 @@ struct Block {
     points: usize,
 }
 
-/// Curves that are taken as known.
+/// Curves taken as known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Knowledge {
     curves: Curves,
@@ -28,14 +28,14 @@ pub struct Knowledge {
 }
 
 impl Default for Knowledge {
-    /// Nothing.
+    /// No curves.
     fn default() -> Self {
         Self::exact(Curves::default())
     }
 }
 
 impl Knowledge {
-    /// Curves that are taken as exact.
+    /// Curves taken as exact.
     pub fn exact(curves: Curves) -> Self {
         Self { curves, blocks: Vec::new(), covariance: DMatrix::zeros(0, 0) }
     }
@@ -50,7 +50,7 @@ impl Knowledge {
         self.curves.get(component).is_some()
     }
 
-    /// The same without some components.
+    /// A copy without some components.
     pub fn without(&self, components: &[Component]) -> Self {
         let mut kept = Self::exact(
             self.curves
@@ -68,7 +68,7 @@ impl Knowledge {
         kept
     }
 
-    /// The components of every uncertain curve of which some take part, a group each; the columns of a
+    /// The components of every uncertain curve of which some take part, one group each: the columns of a
     /// [`sensitivity`](crate::equilibria::Simulation::sensitivity_to) to them.
     pub fn groups(&self, parts: &[Component]) -> Vec<Vec<Component>> {
         let taking_part = |block: &&Block| block.components.iter().any(|c| parts.contains(c));
@@ -81,9 +81,9 @@ impl Knowledge {
         DMatrix::from_fn(indices.len(), indices.len(), |i, j| self.covariance[(indices[i], indices[j])])
     }
 
-    /// Adds what a stage found.
+    /// Adds the result of a stage.
     ///
-    /// * `covariance` — of the curve's control values, all told
+    /// * `covariance` — full covariance of the curve's control values
     /// * `gain` — G with respect to the groups of `parts`
     pub fn learn(
         &mut self,
@@ -96,7 +96,7 @@ impl Knowledge {
         let known = self.without(components);
         let indices = known.indices(parts);
         let [old, points] = [known.covariance.nrows(), curve.len()];
-        // −G Cov(q, all that is known).
+        // −G Cov(q, all known values).
         let rows = DMatrix::from_fn(indices.len(), old, |i, j| known.covariance[(indices[i], j)]);
         let cross = if indices.is_empty() { DMatrix::zeros(points, old) } else { -(gain * rows) };
         let mut joint = DMatrix::zeros(old + points, old + points);
@@ -137,12 +137,12 @@ mod tests {
         let one = DMatrix::from_element(1, 1, 4.0);
         knowledge.learn(&[a], &curve(10.0), &one, &[], &DMatrix::zeros(1, 0));
         assert_eq!(knowledge.groups(&[a, b]), vec![vec![a]]);
-        // b errs by −½ of a's error, and by 1 of its own.
+        // b's error is −½ of a's, plus an independent one of 1.
         let gain = DMatrix::from_element(1, 1, 0.5);
         let covariance = DMatrix::from_element(1, 1, 1.0 + 0.25 * 4.0);
         knowledge.learn(&[b], &curve(3.0), &covariance, &[a, b], &gain);
         assert_eq!(knowledge.covariance(&[a, b]), DMatrix::from_row_slice(2, 2, &[4.0, -2.0, -2.0, 2.0]));
-        // Learned again, it stands once.
+        // Learned again, it still has one entry.
         knowledge.learn(&[b], &curve(5.0), &covariance, &[a, b], &gain);
         assert_eq!(knowledge.groups(&[a, b]).len(), 2);
         let forgotten = knowledge.without(&[a]);

@@ -1,4 +1,4 @@
-//! What a fit found, as plain data: nothing here computes.
+//! Results of a fit, as plain data without computation.
 
 use super::interventions::Interventions;
 use super::level::Level;
@@ -18,37 +18,37 @@ use std::collections::BTreeMap;
 pub struct CurveReport {
     /// The curve, over the model's own strain.
     pub curve: StiffnessCurve,
-    /// Its control points as rows of the curve file. Bending: over curvature.
+    /// The control points as rows of the curve file. Bending: over curvature.
     pub points: Vec<Sample>,
-    /// False if the measurements do not tell even its scale: then it is no result, and has no file.
+    /// False if the measurements do not even determine the curve's scale; it is then no result and has no file.
     pub observed: bool,
-    /// Standard deviation of each control value; `None` where no frame sees it.
+    /// Standard deviation of each control value; `None` if no frame observes it.
     pub deviations: Vec<Option<f64>>,
-    /// Half the 95 % band of each control value; `None` where no frame sees it.
+    /// Half-width of the 95 % band of each control value; `None` if no frame observes it.
     pub half_bands: Vec<Option<f64>>,
-    /// The strains that the measurement visited; shear and bending: their sizes.
+    /// Strains visited by the measurement; shear and bending: absolute values.
     pub visited: [f64; 2],
-    /// The same as the curve file has it. Bending: curvatures, 1/m.
+    /// The same range in the units of the curve file. Bending: curvatures, 1/m.
     pub seen: [f64; 2],
-    /// Share of the range of control points that was visited, 0 … 1.
+    /// Visited share of the range of control points, 0 … 1.
     pub share_visited: f64,
-    /// 201 rows from rest, or from the smallest strain where that is negative, to the largest that was visited; without a
-    /// band below those that were. Bending: over curvature.
+    /// 201 rows from rest, or from the smallest strain if that is negative, to the largest visited strain; no band
+    /// below the visited strains. Bending: over curvature.
     pub samples: Vec<Sample>,
-    /// How often strains were met, over the same range. Bending: over curvature.
+    /// Distribution of strains over the same range. Bending: over curvature.
     pub histogram: Histogram,
-    /// How many directions of the control values the data see.
+    /// Number of directions of the control values that the data determine.
     pub rank: usize,
-    /// Control points that no frame sees.
+    /// Control points that no frame observes.
     pub unseen: Vec<usize>,
-    /// Correlation of each control value with each; `None` with one that the data do not see.
+    /// Correlation matrix of the control values; `None` for pairs with one that the data do not see.
     pub correlations: Vec<Vec<Option<f64>>>,
-    /// How many of the curve's constraints hold the solution.
+    /// Number of active constraints at the solution.
     pub active_constraints: usize,
 }
 
 impl CurveReport {
-    /// Pairs of control values whose correlation exceeds 0.95 in size.
+    /// Pairs of control values with an absolute correlation above 0.95.
     pub fn correlated(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let row = |(j, row): (usize, &Vec<Option<f64>>)| {
             row[..j].iter().enumerate().filter_map(|(i, c)| Some((i, j, (*c)?))).collect::<Vec<_>>()
@@ -57,7 +57,7 @@ impl CurveReport {
     }
 }
 
-/// One row of a curve file, or a control point in the same terms.
+/// One row of a curve file, or a control point in the same form.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Strain; bending: curvature, 1/m.
@@ -66,48 +66,49 @@ pub struct Sample {
     pub stiffness: f64,
     /// Stress, N/m; bending: moment per width, N.
     pub stress: f64,
-    /// 95 % band of the stress or moment; `None` where no frame sees it.
+    /// 95 % band of the stress or moment; `None` if no frame observes it.
     pub band: Option<[f64; 2]>,
 }
 
-/// Which strains the equilibria of all frames have, by the sheet's area.
+/// Distribution of strains over the sheet's area, at the equilibria of all frames.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Histogram {
-    /// Where the first bin begins and the last one ends.
+    /// Start of the first bin and end of the last.
     pub range: [f64; 2],
-    /// Share of the area in each bin, all as wide; what lies outside the range is in none.
+    /// Share of the area in each bin of equal width; strains outside the range are in no bin.
     pub shares: Vec<f64>,
 }
 
-/// How a sequence was met.
+/// Residuals of a sequence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SequenceReport {
     /// Name of the sequence.
     pub name: String,
-    /// Which test it is.
+    /// Kind of test.
     pub kind: Kind,
     /// Frames used.
     pub frames: usize,
-    /// Frames left out because nothing was stretched, or no force measured.
+    /// Frames left out: no extension, or no measured force.
     pub at_rest: usize,
-    /// Two unknowns a node.
+    /// True if nodes move in the plane only: two unknowns per node.
     pub planar: bool,
     /// Columns and rows of nodes.
     pub nodes: [usize; 2],
-    /// Root mean square of measured − simulated over all measured force components, N; `None` = none was measured.
+    /// Root mean square of measured − simulated over all measured force components, N; `None` if none was measured.
     pub force_rms: Option<f64>,
     /// Largest measured force component, N; 0 if none was measured.
     pub force_largest: f64,
-    /// How far its frames went at most: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
+    /// Largest extension of its frames: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
     pub extension: f64,
-    /// Root mean square distance between measured and simulated nodes, m, where shapes were measured.
+    /// Root mean square distance between measured and simulated nodes, m, if shapes were measured.
     pub position_rms: Option<f64>,
-    /// Frames whose residual stands out from its neighbours', the farthest first: a slip, or a wrong sign; where no force
-    /// was measured, a shape far off.
+    /// Frames whose residual stands out from its neighbours', the largest first: slip, or a wrong sign; without
+    /// measured forces, a shape far off.
     pub outliers: Vec<usize>,
-    /// Frames that left an unstable equilibrium: they may have several. Their shapes are not in `position_rms`.
+    /// Frames whose solve left an unstable equilibrium: they may have several equilibria. `position_rms` omits their
+    /// shapes.
     pub multi_stable: Vec<usize>,
-    /// Measured stiffness on loading and on unloading, as multiples of the curve's.
+    /// Measured loading and unloading stiffness, as multiples of the curve's.
     pub hysteresis: Option<Hysteresis>,
     /// Every force component of every frame.
     pub forces: Vec<ForceRow>,
@@ -116,24 +117,24 @@ pub struct SequenceReport {
 }
 
 impl SequenceReport {
-    /// Frames that take no part: at rest, without a force, or without an equilibrium.
+    /// Skipped frames: at rest, without a force, or without an equilibrium.
     ///
-    /// * `dropped` — the frames without an equilibrium, of this and other sequences
+    /// * `dropped` — frames without an equilibrium, of this and other sequences
     pub fn left_out(&self, dropped: &[DroppedFrame]) -> usize {
         self.at_rest + dropped.iter().filter(|frame| frame.sequence == self.name).count()
     }
 }
 
-/// Loading against unloading.
+/// Hysteresis: loading and unloading stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hysteresis {
-    /// Stiffness on loading over the curve's.
+    /// Ratio of loading stiffness to the curve's.
     pub loading: f64,
-    /// Stiffness on unloading over the curve's.
+    /// Ratio of unloading stiffness to the curve's.
     pub unloading: f64,
 }
 
-/// One measured force component and its simulation.
+/// One measured force component with its simulated value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ForceRow {
     /// Index of the frame in its sequence.
@@ -142,13 +143,13 @@ pub struct ForceRow {
     pub phase: Phase,
     /// Index of the clip.
     pub clip: usize,
-    /// Which of the clip's components; its direction may turn with the clip.
+    /// Number of the component on its clip; its direction may turn with the clip.
     pub number: usize,
     /// Unit direction of the component, in the specimen's own frame.
     pub direction: Vector3<f64>,
-    /// The same in the world's axes.
+    /// The same in world axes.
     pub world: Vector3<f64>,
-    /// How far the test went: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
+    /// Extension of the test: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
     pub extension: f64,
     /// Measured, N.
     pub measured: f64,
@@ -156,27 +157,27 @@ pub struct ForceRow {
     pub simulated: f64,
 }
 
-/// What a stage took as known.
+/// Curves that a stage took as known.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Basis {
-    /// Components fitted before, whose errors the bands carry on.
+    /// Components fitted before; the bands include their errors.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub carried: Vec<Component>,
-    /// All components whose curves were known.
+    /// All components with known curves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub known: Vec<Component>,
-    /// Components that nobody measured: a constant stiffness was assumed.
+    /// Unmeasured components; a constant stiffness was assumed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Component>,
-    /// That stiffness, N/m (bending: N·m per the model's own strain). Files of former versions lack it.
+    /// That stiffness, N/m (bending: N·m per the model's own strain). Absent in files of earlier versions.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub assumed_stiffness: BTreeMap<Component, f64>,
 }
 
 impl Basis {
-    /// The stiffnesses that a fit has assumed of what nobody measured, given the basis of each of its curves; where its
-    /// stages differ that of shear, which depends on it most.
+    /// The stiffnesses that a fit assumed for unmeasured components, given the basis of each of its curves. If stages
+    /// differ, that of shear counts, which depends on it most.
     pub fn all_assumed<'a>(of: impl Fn(Component) -> Option<&'a Self>) -> BTreeMap<Component, f64> {
         let mut all = BTreeMap::new();
         let others = Component::ALL.into_iter().filter(|component| *component != Component::Shear);
@@ -189,52 +190,52 @@ impl Basis {
     }
 }
 
-/// A stage of the fit: one curve.
+/// Report of one stage: one curve.
 #[must_use]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageReport {
-    /// Which components were fitted: one, or weft and warp with a curve in common.
+    /// Fitted components: one, or weft and warp with a shared curve.
     pub components: Vec<Component>,
-    /// First or second pass over them.
+    /// First or second pass over the components.
     pub pass: usize,
-    /// With which model.
+    /// Model of the fit.
     pub model: Model,
-    /// In which variant.
+    /// Variant of the model.
     pub variant: Variant,
-    /// What was compared.
+    /// The compared quantity.
     pub objective: Objective,
-    /// What was taken as known.
+    /// Curves taken as known.
     pub basis: Basis,
     /// The curve.
     pub curve: CurveReport,
     /// Noise and misfit, N or m.
     pub scatter: Scatter,
-    /// How each sequence was met.
+    /// Residuals of each sequence.
     pub sequences: Vec<SequenceReport>,
-    /// Frames whose equilibrium was not found; they take no part.
+    /// Skipped frames: their equilibrium was not found.
     pub dropped: Vec<DroppedFrame>,
-    /// The levels of the curve's growth.
+    /// Levels of the curve's growth.
     pub levels: Vec<Level>,
-    /// Why the growth ended.
+    /// Reason for the end of the growth.
     pub growth: String,
-    /// The level that was kept came to its minimum.
+    /// True if the kept level converged.
     pub converged: bool,
-    /// What was spent.
+    /// Cost of the solves.
     pub counters: Counters,
-    /// What helped it along.
+    /// Numerical interventions.
     pub interventions: Interventions,
     /// Wall time, s.
     pub seconds: f64,
 }
 
 impl StageReport {
-    /// The fitted components by name.
+    /// Names of the fitted components.
     pub fn name(&self) -> String {
         let names: Vec<String> = self.components.iter().map(|component| component.to_string()).collect();
         names.join(" = ")
     }
 
-    /// Frames of one of its sequences that take no part: at rest, without a force, or without an equilibrium.
+    /// Skipped frames of one of its sequences: at rest, without a force, or without an equilibrium.
     pub fn left_out(&self, sequence: &SequenceReport) -> usize {
         sequence.left_out(&self.dropped)
     }

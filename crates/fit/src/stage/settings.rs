@@ -1,4 +1,4 @@
-//! How a curve is fitted: model and variant, grid, constraints, start, growth, outer loop.
+//! Settings of a fit: model and variant, grid, constraints, start, growth, outer loop.
 
 use super::growth_rule::GrowthRule;
 use crate::equilibria::SolveStart;
@@ -10,29 +10,29 @@ use cloth_sim::material::{Component, Compression, Model};
 use cloth_sim::mesh::Diagonals;
 use serde::{Deserialize, Serialize};
 
-/// What keeps a curve physical.
+/// Constraints that keep a curve physical.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Constraints {
     /// dσ/dε everywhere above a thousandth of the largest stiffness of the gap start.
     #[default]
     Stable,
-    /// Control values not negative: the published rule.
+    /// Non-negative control values: the published rule.
     ControlPoints,
 }
 
-/// Which of a model's freedoms a fit uses.
+/// Model variants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variant {
-    /// Nonlinear curves, weft and warp apart.
+    /// Nonlinear curves, separate for weft and warp.
     #[default]
     Orthotropic,
-    /// Constant stiffness, weft and warp apart.
+    /// Constant stiffness, separate for weft and warp.
     Linear,
-    /// Nonlinear curves, the same for weft and warp.
+    /// Nonlinear curves, shared by weft and warp.
     Isotropic,
-    /// Constant stiffness, the same for weft and warp.
+    /// Constant stiffness, shared by weft and warp.
     LinearIsotropic,
 }
 
@@ -40,12 +40,12 @@ impl Variant {
     /// All variants.
     pub const ALL: [Self; 4] = [Self::Orthotropic, Self::Linear, Self::Isotropic, Self::LinearIsotropic];
 
-    /// Constant stiffness.
+    /// True for constant stiffness.
     pub fn is_linear(self) -> bool {
         matches!(self, Self::Linear | Self::LinearIsotropic)
     }
 
-    /// Weft and warp share their curves.
+    /// True if weft and warp share their curves.
     pub fn is_isotropic(self) -> bool {
         matches!(self, Self::Isotropic | Self::LinearIsotropic)
     }
@@ -62,65 +62,67 @@ impl std::fmt::Display for Variant {
     }
 }
 
-/// The constant stiffness that a stage starts from.
+/// The constant stiffness at the start of a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FirstStiffness {
-    /// What balances the clip forces on blended shapes (equilibrium gap), or what Peirce's formula makes of an overhang.
+    /// From the measurements: the stiffness that balances the clip forces on blended shapes (equilibrium gap), or
+    /// that Peirce's formula gives for an overhang.
     #[default]
     FromMeasurements,
-    /// The same for every fabric: 100 N/m for stretch, 10 N/m for shear, a flexural rigidity of 1e-5 N·m for bending. The
-    /// published method does not say where it starts; these are ours, round numbers among light and heavy fabrics.
+    /// The same for every fabric: 100 N/m for stretch, 10 N/m for shear, a flexural rigidity of 1e-5 N·m for bending.
+    /// The published method does not state its start; these round numbers are ours and lie between light and heavy
+    /// fabrics.
     Constant,
 }
 
 impl FirstStiffness {
-    /// Stretch or shear, N/m; `None` if the measurements say.
+    /// Stretch or shear, N/m; `None` if it comes from the measurements.
     pub(super) fn of_membrane(self, component: Component) -> Option<f64> {
         let constant = if component.is_stretch() { 100.0 } else { 10.0 };
         (self == Self::Constant).then_some(constant)
     }
 
-    /// Flexural rigidity, N·m; `None` if the measurements say.
+    /// Flexural rigidity, N·m; `None` if it comes from the measurements.
     pub(super) fn of_bending(self) -> Option<f64> {
         (self == Self::Constant).then_some(1e-5)
     }
 }
 
-/// How a curve is fitted.
+/// Settings of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// The cloth model; default StVK.
     pub model: Model,
-    /// Which of its freedoms are used; default all.
+    /// Model variant; default orthotropic.
     pub variant: Variant,
     /// Columns and rows of the simulation's grid; default as many cells as 25×25 nodes have, near square.
     pub nodes: Option<[usize; 2]>,
-    /// How its cells are split; default alternating: cells all split one way twist a sheet that is bent.
+    /// Split of the grid's cells; default alternating: cells all split one way twist a bent sheet.
     pub diagonals: Diagonals,
-    /// Most control points; default 5.
+    /// Maximum number of control points; default 5.
     pub points: usize,
-    /// What keeps the curve physical; default stable.
+    /// Constraints on the curve; default stable.
     pub constraints: Constraints,
-    /// Compression; default with the stiffness at zero strain.
+    /// Behaviour under compression; default the stiffness at zero strain.
     pub compression: Compression,
-    /// How equilibria are found. Published: Levenberg–Marquardt, whose matrix serves the sensitivities too, to 10 µN.
+    /// Equilibrium solver. Published: Levenberg–Marquardt to 10 µN, its matrix also used for the sensitivities.
     pub equilibrium: equilibrium::Settings,
-    /// Where equilibria start; default at the frame's last one. Published: at the measured shape.
+    /// Start of equilibria; default the frame's last one. Published: the measured shape.
     pub solve_start: SolveStart,
-    /// The stiffness that a stage starts from; default from the measurements. Published: not given.
+    /// Start stiffness of a stage; default from the measurements. Published: not stated.
     pub first_stiffness: FirstStiffness,
-    /// What a table holds; default up to the second line past its edge. Published: what lies on it.
+    /// Constraint at a table; default up to the second line past its edge. Published: the part on the table.
     pub table: TableHold,
-    /// When more control points pay; default while they lower the root mean square residual by 1 %. Published: its square.
+    /// Criterion for more control points; default a decrease of the root mean square residual by 1 %. Published: its
+    /// square.
     pub growth: GrowthRule,
-    /// Residuals above so many times the noise (where it is not given: the typical residual) count less; default `None`: all
-    /// count in full.
+    /// Residuals above this multiple of the noise (of the typical residual if the noise is not given) have less
+    /// weight; default `None`: full weight for all.
     pub robust: Option<f64>,
-    /// Start every stage from this multiple of its own start value; default 1. For those who ask whether a fit depends on
-    /// where it starts.
+    /// Multiplies the start stiffness of every stage; default 1. Tests whether a fit depends on its start.
     pub start_factor: f64,
-    /// The outer loop; default a trust region, and full convergence. Published: a line search, until a step gains less than
-    /// 1 %.
+    /// Outer loop; default a trust region, to full convergence. Published: a line search, until a step gains less
+    /// than 1 %.
     pub outer: Options,
 }
 
@@ -141,7 +143,7 @@ impl Default for Settings {
             growth: GrowthRule::default(),
             robust: None,
             start_factor: 1.0,
-            // A share of 1e-6 of the sum of squares, or of 1e-7 of the stiffnesses, is far below any noise.
+            // 1e-6 of the sum of squares, or 1e-7 of the stiffnesses, is far below any noise.
             outer: Options {
                 gain_tolerance: 1e-6,
                 step_tolerance: 1e-7,
@@ -153,15 +155,16 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Most control points that the variant allows.
+    /// Maximum number of control points for the variant.
     pub fn most_points(&self) -> usize {
         if self.variant.is_linear() { 1 } else { self.points }
     }
 
-    /// The published method of fitting, for the same model, variant, grid and compression. Each of these settings can be
-    /// changed alone, too.
+    /// The published method, with the same model, variant, grid and compression. Each of these settings can also be
+    /// changed separately.
     ///
-    /// Source: Miguel et al. 2012, §5.1 and §5.2; what they leave open: docs/model.md, "The method as published".
+    /// Source: Miguel et al. 2012, §5.1 and §5.2; details that they leave open: docs/model.md, "The method as
+    /// published".
     pub fn as_published(self) -> Self {
         Self {
             constraints: Constraints::ControlPoints,
@@ -181,15 +184,16 @@ impl Settings {
         }
     }
 
-    /// True if these are the settings of [`Settings::as_published`].
+    /// True for the settings of [`Settings::as_published`].
     pub fn is_as_published(&self) -> bool {
         *self == self.clone().as_published()
     }
 
-    /// Names the setting that cannot be.
+    /// Rejects invalid settings, by name.
     ///
     /// # Errors
-    /// No control point, or more than 50; no try at growth; fewer than 3 nodes a side or more than 1000.
+    /// No control point, or more than 50; `robust` or the start factor not positive; no try at growth; fewer than 3
+    /// nodes per side or more than 1000.
     pub fn validate(&self) -> Result<()> {
         let setting = |field, found: String, expected: &str| {
             Err(Error::Setting { field, found, expected: expected.into() })
@@ -198,7 +202,11 @@ impl Settings {
             return setting("points", self.points.to_string(), "1 to 50 control points");
         }
         if !self.robust.is_none_or(|limit| limit > 0.0 && limit.is_finite()) {
-            return setting("robust", format!("{:?}", self.robust), "a positive multiple of the noise, as 3");
+            return setting(
+                "robust",
+                format!("{:?}", self.robust),
+                "a positive multiple of the noise, e.g. 3",
+            );
         }
         if !(self.start_factor > 0.0 && self.start_factor.is_finite()) {
             return setting("start_factor", self.start_factor.to_string(), "a positive number");

@@ -1,4 +1,4 @@
-//! The shapes of a sequence, simulated beside seen: for those who look at them.
+//! Simulated and measured shapes of a sequence, for display.
 
 use crate::equilibria::Settled;
 use crate::twin::replica::Replica;
@@ -6,15 +6,15 @@ use cloth_sim::mesh::Grid;
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Single precision: what is looked at needs no more.
+/// Single precision: sufficient for display.
 pub type Place = [f32; 3];
 
-/// All frames of a sequence that were used, on the simulation's grid, in the world's axes.
+/// All used frames of a sequence, on the simulation's grid, in world axes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shapes {
     /// The simulation's grid.
     pub grid: Grid,
-    /// Three nodes each.
+    /// Three nodes per triangle.
     pub triangles: Vec<[usize; 3]>,
     /// Material coordinates of every node, m: u along weft, v along warp.
     pub material: Vec<Vector2<f64>>,
@@ -27,16 +27,16 @@ pub struct Shapes {
 pub struct FrameShape {
     /// Index of the frame in its sequence.
     pub frame: usize,
-    /// How far the test went: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
+    /// Extension of the test: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
     pub extension: f64,
-    /// Where the nodes are in equilibrium, m.
+    /// Positions of the nodes in equilibrium, m.
     pub simulated: Vec<Place>,
-    /// Where they were seen, m, NaN where not; empty where no shape was measured.
+    /// Measured positions of the nodes, m; NaN if a node was not observed, empty if no shape was measured.
     pub measured: Vec<Place>,
 }
 
 impl Shapes {
-    /// A replica's mesh, without a frame yet.
+    /// The mesh of a replica, without frames.
     pub(crate) fn of(replica: &Replica) -> Self {
         let mesh = &replica.specimen.mesh;
         Self {
@@ -47,7 +47,7 @@ impl Shapes {
         }
     }
 
-    /// One more frame.
+    /// Adds a frame.
     pub(crate) fn push(&mut self, settled: &Settled<'_>) {
         let Settled { replica, frame, x, .. } = *settled;
         let back = replica.specimen.frame.inverse();

@@ -1,15 +1,15 @@
-//! Shear: one curve, stretch known, from the forces along the bars of a picture frame or on a strip cut on the bias.
+//! Shear: one curve, from the forces along the bars of a picture frame or on a bias strip; stretch known.
 //!
-//! The first pass keeps the sheet in its plane and leaves bending out. Where it was seen to buckle, the second lets it,
-//! with the bending that was found meanwhile.
+//! The first pass keeps the sheet in its plane, without bending. If the sheet was seen to buckle, the second pass
+//! lets it, with the bending curves found in between.
 //!
-//! Source: Miguel et al. 2012, §5.2; the strip cut on the bias is ours, for those without a picture frame.
+//! Source: Miguel et al. 2012, §5.2; the bias strip is ours, for laboratories without a picture frame.
 
 use super::plan::{Plan, kinds_of_all};
 use crate::equilibria::Objective;
 use cloth_sim::material::Component;
 
-/// What the stage fits, and on what.
+/// The plan of the stage.
 ///
 /// * `pass` — 1: in the plane; 2: in space, where the sheet was seen to leave its plane
 pub fn plan(pass: usize) -> Plan {

@@ -1,4 +1,4 @@
-//! Where a stage starts without any simulation: a constant stiffness, and constants for what is not known yet.
+//! Start of a stage, without simulation: a constant stiffness, and constants for unknown curves.
 
 use super::gap;
 use super::growth::domain;
@@ -13,29 +13,29 @@ use cloth_sim::curve::{StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Curves};
 use std::collections::BTreeMap;
 
-/// Where a stage starts.
+/// Start of a stage.
 pub(super) struct Start {
     /// The constant stiffness, N/m (bending: N·m per the model's own strain).
     pub(super) stiffness: f64,
-    /// About the largest stiffness there is.
+    /// Estimate of the largest stiffness.
     pub(super) largest: f64,
-    /// What is simulated beside the fitted curve: known, or assumed.
+    /// Curves of the other components: known or assumed.
     pub(super) known: Curves,
-    /// Components whose curve nobody measured, with the constant stiffness that they have.
+    /// Unmeasured components, with their assumed constant stiffness.
     pub(super) assumed: BTreeMap<Component, f64>,
 }
 
-/// Finds it from forces (equilibrium gap) or from shapes (Peirce's cantilever), or takes a constant.
+/// Estimates the start from forces (equilibrium gap) or shapes (Peirce's cantilever), or takes a constant.
 ///
 /// # Errors
-/// Measurements that no positive stiffness explains.
+/// Measurements that no positive stiffness can explain.
 pub(super) fn start(
     plan: &Plan,
     replicas: &[Replica],
     knowledge: &Knowledge,
     settings: &Settings,
 ) -> Result<Start> {
-    // What stands for other curves is no start, and stays what the measurements say.
+    // Assumed curves use the measured value, not the start.
     let [stiffness, measured] = match plan.objective {
         Objective::Forces => {
             let measured = from_forces(plan, replicas, settings)?;
@@ -65,7 +65,7 @@ pub(super) fn start(
     Ok(Start { stiffness: stiffness * settings.start_factor, largest, known, assumed })
 }
 
-/// What takes the place of a curve that is not known.
+/// The assumed constant for an unknown curve.
 fn assumption(
     plan: &Plan,
     replicas: &[Replica],
@@ -76,7 +76,7 @@ fn assumption(
     if component.is_bending() && !plan.fitted[0].is_bending() {
         return softest_bending(known).unwrap_or_else(|| usual_bending(replicas, component));
     }
-    // Across a strip, and for the other bending: as the fitted one. It hardly matters.
+    // Across a strip, and for the other bending components: as the fitted one. It hardly matters.
     if component.is_bending() || plan.fitted[0].is_stretch() {
         return stiffness;
     }
@@ -84,10 +84,10 @@ fn assumption(
     unyielding(replicas, component, shear)
 }
 
-/// Stiffness of a membrane that hardly gives under its own weight, or under the forces of shear, N/m: what is assumed of a
-/// stretch or shear curve where the tests are about others.
+/// Stiffness of a nearly inextensible membrane under its own weight or under the forces of shear, N/m: assumed for an
+/// unknown stretch or shear curve in tests of other components.
 ///
-/// * `shear` — the shear stiffness, N/m; 0 where nothing is sheared
+/// * `shear` — the shear stiffness, N/m; 0 without shear
 pub(crate) fn unyielding(replicas: &[Replica], component: Component, shear: f64) -> f64 {
     let weight = replicas
         .iter()
@@ -97,7 +97,7 @@ pub(crate) fn unyielding(replicas: &[Replica], component: Component, shear: f64)
     if component.is_stretch() { stretch } else { 0.1 * stretch }
 }
 
-/// The smallest stiffness of the bending curves that are known, which stands for those that are not.
+/// The smallest stiffness of the known bending curves, assumed for the unknown ones.
 pub(crate) fn softest_bending(known: &Curves) -> Option<f64> {
     let bends = known.components().filter(|component| component.is_bending());
     let stiffnesses =
@@ -105,11 +105,11 @@ pub(crate) fn softest_bending(known: &Curves) -> Option<f64> {
     stiffnesses.copied().reduce(f64::min)
 }
 
-/// Bending length of the median fabric, m: ∛(rigidity / weight per area). Of 168 measured fabrics in three directions 95 of
-/// 100 lie between 10 and 32 mm. Source: Feng et al. 2022.
+/// Bending length of the median fabric, m: ∛(rigidity / weight per area). Of 168 fabrics measured in three
+/// directions, 95 of 100 lie between 10 and 32 mm. Source: Feng et al. 2022.
 const USUAL_BENDING_LENGTH: f64 = 0.019;
 
-/// The stiffness of one bending component that gives a sheet of its weight the usual bending length.
+/// The stiffness of one bending component that gives the sheet the usual bending length.
 fn usual_bending(replicas: &[Replica], component: Component) -> f64 {
     let curvature = 1.0 / USUAL_BENDING_LENGTH;
     let of_replica = |replica: &Replica| {
@@ -120,10 +120,11 @@ fn usual_bending(replicas: &[Replica], component: Component) -> f64 {
     replicas.iter().find_map(of_replica).unwrap_or(0.0)
 }
 
-/// m/s²; a bending length is stated for it, whatever the test's own is.
+/// m/s²; bending lengths refer to it, whatever the gravity of the test.
 const STANDARD_GRAVITY: f64 = 9.81;
 
-/// The mean stiffness that balances the clip forces on the blended shapes, if the fitted curve bore all the load.
+/// The mean stiffness that balances the clip forces on the blended shapes, as if the fitted curve carried all the
+/// load.
 fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result<f64> {
     let range = blended_range(plan, replicas);
     let frames = replicas.iter().flat_map(|replica| &replica.frames);
@@ -132,8 +133,8 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
     if range < 0.1 * extension {
         return Err(unfit(
             replicas,
-            format!("an extension or a shear angle of {extension:.2e}, and {name} of {range:.2e}"),
-            "a pull along the yarns that the test's kind names: check kind, and vt in mesh.obj",
+            format!("a {name} strain of only {range:.2e} at an extension or shear angle of {extension:.2e}"),
+            "a pull along the yarns of the test's kind: check kind, and vt in mesh.obj",
         ));
     }
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
@@ -142,14 +143,14 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
     if !(mean > 0.0) {
         return Err(unfit(
             replicas,
-            format!("clip forces that make a stiffness of {mean:.3e} N/m"),
-            "the force that the cords exert on each clip, outward where the specimen is stretched: its sign, or force_direction",
+            format!("clip forces that give a stiffness of {mean:.3e} N/m"),
+            "the force of the cords on each clip, outward under stretch: check its sign, or force_direction",
         ));
     }
     Ok(mean)
 }
 
-/// The largest control value of a curve with all its points on the blended shapes.
+/// The largest control value of a curve with the maximum number of points, on the blended shapes.
 fn largest_from_forces(plan: &Plan, replicas: &[Replica], mean: f64, settings: &Settings) -> Result<f64> {
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
     let points = settings.most_points();
@@ -171,7 +172,8 @@ fn blended_range(plan: &Plan, replicas: &[Replica]) -> f64 {
         .fold(f64::MIN_POSITIVE, |largest, [strain, _]| largest.max(if odd { strain.abs() } else { strain }))
 }
 
-/// Ring-2 springs lean on the yarns: where they are stiffer, the yarns stretch instead, and bending gets no stiffer.
+/// Ring-2 springs depend on the yarns: if stiffer, the yarns stretch instead, and the bending stiffness does not
+/// rise.
 fn most_that_bends(plan: &Plan, known: &Curves, settings: &Settings) -> f64 {
     let yarns = plan.components.iter().filter(|component| component.is_stretch());
     let stiffnesses = yarns.filter_map(|&component| Some(known.get(component)?.stiffnesses()[0]));
@@ -179,8 +181,8 @@ fn most_that_bends(plan: &Plan, known: &Curves, settings: &Settings) -> f64 {
     if settings.model.is_of_springs() && largest > 0.0 { largest } else { f64::INFINITY }
 }
 
-/// The median over all frames of the stiffness that Peirce's formula gives; of that which gives a rigidity, N·m, if one is
-/// given.
+/// The median over all frames of the stiffness by Peirce's formula; with `given`, of the stiffness for that rigidity,
+/// N·m.
 fn from_shapes(plan: &Plan, replicas: &[Replica], given: Option<f64>) -> Result<f64> {
     let mut found: Vec<f64> = Vec::new();
     for replica in replicas {
@@ -200,7 +202,7 @@ fn from_shapes(plan: &Plan, replicas: &[Replica], given: Option<f64>) -> Result<
         unfit(
             replicas,
             "no overhang that sags under its weight".into(),
-            "gravity_m_s2 that is not zero, and cloth that hangs over the edge",
+            "nonzero gravity_m_s2, and cloth that hangs over the edge",
         )
     })
 }

@@ -1,7 +1,8 @@
-//! Stretch: one curve for weft or warp, from the clip forces of the strips pulled along it.
+//! Stretch: one curve for weft or warp, from the clip forces of strips pulled along it.
 //!
-//! Shear and bending are left out. The curve across keeps a constant stiffness: without Poisson coupling it does not
-//! matter. Loading and unloading are fitted alike, so the curve runs through the mean of the hysteresis band.
+//! Shear and bending are left out. The curve across the strip keeps a constant stiffness, which does not matter
+//! without Poisson coupling. Loading and unloading have equal weight, so the curve runs through the middle of the
+//! hysteresis band.
 //!
 //! Source: Miguel et al. 2012, §5.2.
 
@@ -16,9 +17,9 @@ use cloth_data::error::Result;
 use cloth_data::frame::MeasurementSet;
 use cloth_sim::material::Component;
 
-/// What the stage fits, and on what.
+/// The plan of the stage.
 ///
-/// * `components` — weft or warp; both, if they share a curve
+/// * `components` — weft or warp; both if they share a curve
 pub fn plan(components: &[Component]) -> Plan {
     Plan {
         fitted: components.to_vec(),
@@ -30,7 +31,7 @@ pub fn plan(components: &[Component]) -> Plan {
     }
 }
 
-/// Fits one component on all sequences of a set that stretch along it; `None` if there are none.
+/// Fits one component on all sequences of a set that stretch along it; `None` without such a sequence.
 ///
 /// # Errors
 /// As [`super::fit`].

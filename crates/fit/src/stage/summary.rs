@@ -1,4 +1,4 @@
-//! Turns what a stage left behind into its report.
+//! Builds the report of a stage.
 
 use super::growth::Growth;
 use super::report::{CurveReport, ForceRow, Histogram, Hysteresis, Sample, SequenceReport};
@@ -11,7 +11,7 @@ use cloth_sim::curve::StiffnessCurve;
 use nalgebra::DVector;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The curve with its bands, over the strains that the simulation's equilibria visit.
+/// The curve with its bands, over the strains of the simulation's equilibria.
 pub(crate) fn curve_report(
     simulation: &Simulation<'_>,
     unknown: Unknown,
@@ -21,7 +21,7 @@ pub(crate) fn curve_report(
 ) -> CurveReport {
     let Growth { outcome, domain, .. } = growth;
     let visited @ [low, high] = simulation.visited(&unknown);
-    // A curve starts at rest, wherever what was seen of it does.
+    // A curve starts at rest, even if the observed part starts later.
     let range = [low.min(0.0), high];
     let slack = &domain.rows * &outcome.point - &domain.bounds;
     let rolled = rolled(simulation, &unknown);
@@ -50,19 +50,19 @@ pub(crate) fn curve_report(
     }
 }
 
-/// How the fitted bending elements meet a rolled sheet; `None` for stretch and shear.
+/// Relation of the fitted bending elements to a rolled sheet; `None` for stretch and shear.
 fn rolled(simulation: &Simulation<'_>, unknown: &Unknown) -> Option<Rolled> {
     let component = *unknown.components.first()?;
     simulation.settled().find_map(|s| s.replica.cloth(s.frame).bending()?.rolled(component))
 }
 
-/// Rows of a curve file.
+/// Number of rows of a curve file.
 const SAMPLES: usize = 201;
 
-/// Bins of a histogram.
+/// Number of bins of a histogram.
 const BINS: usize = 40;
 
-/// A curve in the terms of its file: over strain, or over curvature.
+/// A curve in the units of its file: over strain, or over curvature.
 struct Rows<'a> {
     curve: &'a StiffnessCurve,
     covariance: &'a Covariance,
@@ -70,22 +70,22 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Evenly spaced rows over a range of strains.
+    /// Equidistant rows over a range of strains.
     fn over(&self, range: [f64; 2]) -> Vec<Sample> {
         let [low, high] = range.map(|strain| self.place(strain));
         (0..SAMPLES).map(|i| self.at(low + (high - low) * i as f64 / (SAMPLES - 1) as f64)).collect()
     }
 
-    /// How often the strains within a range were met.
+    /// Distribution of strains within a range.
     ///
-    /// * `strains` — each with the area it stands for
+    /// * `strains` — strains, each with its area
     fn histogram(&self, range: [f64; 2], strains: &[[f64; 2]]) -> Histogram {
         let range @ [low, high] = range.map(|strain| self.place(strain));
         let all: f64 = strains.iter().map(|[_, area]| area).sum();
         let mut shares = vec![0.0; BINS];
         for [strain, area] in strains {
             let bin = (BINS as f64 * (self.place(*strain) - low) / (high - low)).floor();
-            // What is not finite is in no bin either.
+            // Non-finite strains are in no bin either.
             if (0.0..BINS as f64).contains(&bin) {
                 shares[bin as usize] += area / all;
             }
@@ -93,7 +93,7 @@ impl Rows<'_> {
         Histogram { range, shares }
     }
 
-    /// The strain, or the curvature of it.
+    /// The strain, or its curvature.
     fn place(&self, strain: f64) -> f64 {
         self.rolled.map_or(strain, |rolled| rolled.curvature(strain))
     }
@@ -106,7 +106,7 @@ impl Rows<'_> {
         let mut weights = vec![0.0; curve.len()];
         curve.weights(strain, &mut weights);
         let half = self.covariance.half_band(&DVector::from_vec(weights));
-        // Stress has the sign of strain: what lies beyond zero is not possible.
+        // Stress has the sign of strain: the part of the band beyond zero is impossible.
         let band = half.map(|half| {
             let [low, high] = [stress - lever * half, stress + lever * half];
             if strain >= 0.0 { [low.max(0.0), high] } else { [low, high.min(0.0)] }
@@ -123,14 +123,14 @@ impl Rows<'_> {
     }
 }
 
-/// How every sequence was met.
+/// The reports of all sequences.
 ///
-/// * `forces` — simulated along the measured components of every frame, N
+/// * `forces` — simulated forces along the measured components of every frame, N
 pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>]) -> Vec<SequenceReport> {
     let mut reports: Vec<SequenceReport> = Vec::new();
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut positions: Vec<(f64, usize)> = Vec::new();
-    // Frames with the distance of their shape.
+    // Frames, each with the distance of its shape.
     let mut shapes: Vec<Vec<(usize, f64)>> = Vec::new();
     for (settled, simulated) in simulation.settled().zip(forces) {
         let Settled { replica, frame, x, multi_stable } = settled;
@@ -166,7 +166,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
             report.multi_stable.push(frame.index);
         }
         for (component, &cloth) in frame.forces.iter().zip(simulated) {
-            // The simulated cord force: what the cloth pulls with, less the clip's weight.
+            // The simulated cord force: the pull of the cloth less the clip's weight.
             let simulated = cloth + component.measured - component.force;
             let [up, up_square, down, down_square] = &mut sums[at];
             let branch = match frame.phase {
@@ -191,7 +191,7 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
                 simulated,
             });
         }
-        // Where a shape is one of several, its distance from another is no measure (Miguel et al. 2012, §6).
+        // If a frame has several equilibria, the distance to one of them means nothing (Miguel et al. 2012, §6).
         let compared = frame.observed.iter().filter(|_| !multi_stable);
         let free: BTreeSet<usize> =
             replica.cloth(frame).free_coordinates().iter().map(|(c, _)| c / 3).collect();
@@ -231,8 +231,8 @@ pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>])
     reports
 }
 
-/// Frames whose force stands out from its neighbours' of the same clip and direction: by more than a fiftieth of the
-/// largest force, and as [`standing_out`] says.
+/// Frames whose force residual stands out from its neighbours' of the same clip and direction: by more than a
+/// fiftieth of the largest force, and by the limit of [`standing_out`].
 fn force_outliers(rows: &[ForceRow]) -> Vec<usize> {
     let largest = rows.iter().map(|row| row.measured.abs()).fold(0.0, f64::max);
     let mut tracks: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
@@ -243,17 +243,17 @@ fn force_outliers(rows: &[ForceRow]) -> Vec<usize> {
     farthest_first(tracks.values().flat_map(|track| standing_out(track, 0.02 * largest)).collect())
 }
 
-/// Frames whose shape is farther from the simulated one than its neighbours' are, by more than a fiftieth of the largest
-/// overhang.
+/// Frames whose shape is farther from the simulated one than its neighbours are, by more than a fiftieth of the
+/// largest overhang, and by the limit of [`standing_out`].
 ///
 /// * `shapes` — frames with the root mean square distance of their nodes, m
 fn shape_outliers(shapes: &[(usize, f64)], overhang: f64) -> Vec<usize> {
     farthest_first(standing_out(shapes, 0.02 * overhang))
 }
 
-/// Frames whose residual is off the median of its neighbours' by more than a least figure, and by more than six times the
-/// robust standard deviation of such differences (Hampel 1974); and by how much. A smooth misfit, shared by neighbours, is
-/// none.
+/// Frames whose residual differs from the median of its neighbours by more than `least`, and by more than six robust
+/// standard deviations of such differences (Hampel 1974); with the difference. A smooth misfit, shared by neighbours,
+/// does not stand out.
 fn standing_out(track: &[(usize, f64)], least: f64) -> Vec<(usize, f64)> {
     let median = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -270,7 +270,7 @@ fn standing_out(track: &[(usize, f64)], least: f64) -> Vec<(usize, f64)> {
     track.iter().map(|(frame, _)| *frame).zip(apart).filter(|(_, apart)| *apart > limit).collect()
 }
 
-/// Each frame once, the farthest first: it drags the fit, and others with it.
+/// Each frame once, the largest difference first: it distorts the fit and thereby other residuals.
 fn farthest_first(mut frames: Vec<(usize, f64)>) -> Vec<usize> {
     frames.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     let mut found: Vec<usize> = Vec::new();

@@ -1,4 +1,4 @@
-//! Progress of a fit, for those who wait for it.
+//! Progress of a fit.
 
 use crate::equilibria::Meter;
 use crate::optimise::gauss_newton::Iteration;
@@ -9,18 +9,18 @@ use std::sync::Arc;
 pub struct Watch<'a> {
     /// Counts while frames are solved.
     pub meter: Arc<Meter>,
-    /// Is told of every level and iteration.
+    /// Receives every level and iteration.
     pub observe: Box<dyn FnMut(Event<'_>) + 'a>,
 }
 
 impl Default for Watch<'_> {
-    /// Nobody.
+    /// Ignores all events.
     fn default() -> Self {
         Self { meter: Arc::default(), observe: Box::new(|_| ()) }
     }
 }
 
-/// What happens during a fit.
+/// An event during a fit.
 #[derive(Debug, Clone, Copy)]
 pub enum Event<'a> {
     /// A level of the curve's growth begins.

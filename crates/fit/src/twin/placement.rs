@@ -1,4 +1,4 @@
-//! Where a test takes place: a rest mesh may lie anywhere, and the clips' poses take it from there.
+//! Placement of a test: the rest mesh may lie anywhere, and the clips' poses move it from there.
 //!
 //! ```text
 //!   ╱╲  rest         the frame that deforms the clips' places least: rest ── nearest rigid motion ──▶ where it is held
@@ -14,8 +14,8 @@ use cloth_sim::rigid::nearest_motion;
 use nalgebra::{Isometry3, Vector3};
 use std::borrow::Cow;
 
-/// The sequence with its rest mesh moved as a whole to where its clips hold it, and poses that start there. As it is where it
-/// lies there already, up to what does not count as leaving a plane, and where there are no clips.
+/// The sequence with its rest mesh moved rigidly to its clips, and poses relative to that. Unchanged without clips,
+/// or if it lies there already within the tolerance of flatness.
 pub(crate) fn in_place(sequence: &Sequence) -> Cow<'_, Sequence> {
     let Some(motion) = clips_motion(sequence) else { return Cow::Borrowed(sequence) };
     let mut placed = sequence.clone();
@@ -25,7 +25,7 @@ pub(crate) fn in_place(sequence: &Sequence) -> Cow<'_, Sequence> {
     Cow::Owned(placed)
 }
 
-/// The rigid motion of all clips together in the frame that deforms them least; `None` if it is none to speak of.
+/// The rigid motion of all clips together in the frame that deforms them least; `None` if negligible.
 fn clips_motion(sequence: &Sequence) -> Option<Isometry3<f64>> {
     let pairs = |frame: &Frame| -> Vec<[Vector3<f64>; 2]> {
         let clips = sequence.clips.iter().zip(&frame.poses);

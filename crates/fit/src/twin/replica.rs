@@ -1,7 +1,7 @@
-//! The simulated replica of a measured sequence: a cloth held as the measured one was, and per frame where it is held,
-//! what was measured, and a shape to start from.
+//! The simulated replica of a measured sequence: a cloth with the measured clips or table and, per frame, their
+//! positions, the measurements and a start shape.
 //!
-//! Source: Miguel et al. 2012, §5.1. What is held, which frames are used and how shapes are blended: docs/model.md.
+//! Source: Miguel et al. 2012, §5.1. Held nodes, selection of frames and blending of shapes: docs/model.md.
 
 mod blend;
 mod clips;
@@ -27,20 +27,20 @@ use table::{Lines, Overhang};
 pub use force_component::ForceComponent;
 pub use table::TableHold;
 
-/// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would be one of that yarn.
+/// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would act as that yarn.
 const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
 
-/// Noise of a vertex where none is told, m. Waves that this hides change shear by little; those of a millimetre make a sheet
-/// of 0.1 m a fifth softer.
+/// Assumed noise of a vertex if none is given, m. Waves hidden by it change shear little; waves of a millimetre make
+/// a sheet of 0.1 m softer by a fifth.
 const CLEAR: f64 = 1e-4;
 
-/// Bending strains of rounding, 1/m: those of springs, which have no unit, are as small.
+/// Bending strains up to this are rounding, 1/m; those of springs, which are dimensionless, are as small.
 const FLAT: f64 = 1e-9;
 
-/// What replicas are made of.
+/// Components and discretisation of a replica.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts {
-    /// Which membrane and bending.
+    /// Model of membrane and bending.
     pub model: Model,
     /// The components that store energy.
     pub components: Vec<Component>,
@@ -48,40 +48,40 @@ pub struct Parts {
     pub areal_density: f64,
     /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
     pub nodes: Option<[usize; 2]>,
-    /// How cells are split.
+    /// Split of the cells.
     pub diagonals: Diagonals,
-    /// What a table holds, and how the rest may move.
+    /// Constraint at a table.
     pub table: TableHold,
-    /// All motion stays in the plane, and weight across it is left out: for parts without bending, which in space would
-    /// crumple where they are pressed together.
+    /// All motion stays in the plane, and weight normal to it is left out: for parts without bending, which would
+    /// crumple in space under compression.
     pub flat: bool,
 }
 
-/// A measured sequence made ready for simulation; all in the specimen's own frame.
+/// A measured sequence prepared for simulation, in the specimen's own frame.
 #[derive(Debug)]
 pub struct Replica {
     /// Name of the sequence.
     pub name: String,
-    /// Which test it is.
+    /// Kind of test.
     pub kind: Kind,
     /// The grid.
     pub specimen: Specimen,
-    /// The cloth, once for every set of nodes that some frame holds.
+    /// One cloth for every distinct set of held nodes.
     pub cloths: Vec<Cloth>,
-    /// Per group of held nodes a weight a node: 1 at its own nodes, 0 at the others', harmonic between. It is the virtual
-    /// displacement under which that group alone does work. Empty on a table.
+    /// For each group of held nodes, a weight per node: 1 at its own nodes, 0 at the others', harmonic in between. It
+    /// is the virtual displacement in which that group alone does work. Empty on a table.
     pub fields: Vec<Vec<f64>>,
-    /// The frames that are used.
+    /// The used frames.
     pub frames: Vec<ReplicaFrame>,
-    /// How many frames of the sequence were left out because nothing happens there, or nothing was measured.
+    /// Number of frames left out because the specimen was at rest or nothing was measured.
     pub frames_at_rest: usize,
-    /// Vertices, over all frames, that were seen too far off a table's line to tell its place.
+    /// Vertices, over all frames, too far off a table's line to be used for its position.
     pub vertices_left_out: usize,
-    /// Two unknowns a node.
+    /// True if nodes move in the plane only: two unknowns per node.
     pub planar: bool,
-    /// Standard deviation of a force component, N, where known.
+    /// Standard deviation of a force component, N, if known.
     pub force_noise: Option<f64>,
-    /// Standard deviation of a vertex coordinate, m, where known.
+    /// Standard deviation of a vertex coordinate, m, if known.
     pub position_noise: Option<f64>,
     /// kg/m².
     pub areal_density: f64,
@@ -89,10 +89,10 @@ pub struct Replica {
     pub weight: Vector3<f64>,
     /// The lines along a table's edge.
     lines: Option<Lines>,
-    /// Per node: noise of its coordinates as a share of a vertex's, since a node between vertices sees their mean.
+    /// Per node: noise of its coordinates relative to a vertex's; a node between vertices averages them.
     pub spread: Vec<f64>,
-    /// Noise of the place of a held line off a table, as a share of a vertex's: the line is the mean of many. 0 between
-    /// clips, and where it is not to count.
+    /// Noise of the position of a held line on a table, relative to a vertex's; the line averages many vertices. 0
+    /// between clips, and if whitening is off.
     pub held_spread: f64,
 }
 
@@ -103,17 +103,18 @@ pub struct ReplicaFrame {
     pub index: usize,
     /// Index of its cloth.
     pub cloth: usize,
-    /// Loading or unloading; measured, or from the extension.
+    /// Loading or unloading: measured, or derived from the extension.
     pub phase: Phase,
-    /// How far the test went: mean relative change of distance between the clips; the effective shear angle, rad, where
-    /// bars shear; the length that hangs over a table's edge, m.
+    /// Extension of the test: mean relative change of distance between the clips; effective shear angle, rad, if bars
+    /// shear; length of the overhang at a table, m.
     pub extension: f64,
-    /// A state to start from, 3 stacked coordinates a node, m: what is held in place, the rest blended between clips, or
-    /// where it was seen off a table, smoothed if it bends as a cylinder.
+    /// Start state, 3 stacked coordinates per node, m: held nodes in place; the others blended between clips, or as
+    /// observed on a table, smoothed if the sheet bends as a cylinder.
     pub start: Vec<f64>,
-    /// Where the nodes were seen, 3 stacked coordinates a node, m; `None` = no shape measured, NaN = this node not.
+    /// Observed positions of the nodes, 3 stacked coordinates per node, m; `None` without a measured shape, NaN for
+    /// unobserved nodes.
     pub observed: Option<Vec<f64>>,
-    /// The components of clip forces that were measured.
+    /// Measured components of clip forces.
     pub forces: Vec<ForceComponent>,
 }
 
@@ -121,11 +122,11 @@ impl Replica {
     /// Makes the replica of a sequence.
     ///
     /// # Errors
-    /// A rest mesh that is no rectangle; neither clips nor a table; clips that claim the same node and disagree; no frame in
-    /// which anything happens or is measured; springs in long cells; what the mechanics refuse.
+    /// A rest mesh that is not a rectangle; neither clips nor a table; clips that claim the same node and disagree;
+    /// no frame that is deformed and measured; springs in long cells; errors of the mechanics.
     pub fn new(sequence: &Sequence, parts: &Parts) -> Result<Self> {
         let sequence = &*in_place(sequence);
-        // On the bias the yarns run along the cells' diagonals: triangles without an edge along each would lock.
+        // On the bias the yarns run along the cells' diagonals: triangles without an edge along each yarn would lock.
         let diagonals = match sequence.kind.is_on_the_bias() && !parts.model.is_of_springs() {
             true => Diagonals::Crossed,
             false => parts.diagonals,
@@ -133,7 +134,7 @@ impl Replica {
         let specimen = Specimen::new(sequence, parts.nodes, diagonals)?;
         check_cells(sequence, &specimen, parts.model)?;
         let gravity = specimen.turn(&sequence.gravity);
-        // A component of gravity that rounding left after turning is none.
+        // Drops components of gravity that are rounding of the rotation.
         let mut gravity = gravity.map(|g| if g.abs() <= 1e-9 * gravity.norm() { 0.0 } else { g });
         if parts.flat {
             gravity.z = 0.0;
@@ -193,8 +194,8 @@ impl Replica {
         &self.cloths[frame.cloth]
     }
 
-    /// Flexural rigidity by Peirce's formula from a frame's overhang, N·m, and a typical curvature there, 1/m; `None` where
-    /// nothing hangs.
+    /// Flexural rigidity by Peirce's formula from a frame's overhang, N·m, and a typical curvature there, 1/m; `None`
+    /// without an overhang.
     pub fn peirce(&self, frame: &ReplicaFrame) -> Option<[f64; 2]> {
         let chord = self.lines.as_ref()?.chord(&frame.start)?;
         let weight = self.weight.norm();
@@ -205,7 +206,7 @@ impl Replica {
         Some([rigidity, (2.0 * angle / length).max(f64::MIN_POSITIVE)])
     }
 
-    /// The free coordinates of a frame that were seen: their unknown, and their index.
+    /// The observed free coordinates of a frame: index of the unknown, and of the coordinate.
     pub fn seen_unknowns<'r>(&'r self, frame: &'r ReplicaFrame) -> impl Iterator<Item = (usize, usize)> + 'r {
         let free = self.cloth(frame).free_coordinates();
         frame.observed.iter().flat_map(move |observed| {
@@ -219,7 +220,8 @@ impl Replica {
         self.lines.is_some()
     }
 
-    /// True if it tells of a component. A sheet that bends as a cylinder leaves hinges across its lines flat.
+    /// True if the replica carries information on a component. A sheet that bends as a cylinder leaves the hinges
+    /// across its lines flat.
     pub fn shows(&self, component: Component) -> bool {
         let bends = |component: Component| {
             let strains = self.frames.iter().flat_map(|f| self.cloth(f).strains(component, &f.start));
@@ -229,19 +231,19 @@ impl Replica {
         !rolls || bends(component) || !Component::ALL.into_iter().any(bends)
     }
 
-    /// The sheet at rest, 3 stacked coordinates a node, m.
+    /// The sheet at rest, 3 stacked coordinates per node, m.
     pub fn rest(&self) -> Vec<f64> {
         self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
     }
 
-    /// True if a sheet between clips moves in space, and was not seen to stay flat.
+    /// True if a sheet between clips moves in space and was not observed to stay flat.
     pub fn may_buckle(&self) -> bool {
         let unsure =
             |frame: &ReplicaFrame| flatness(frame.observed.as_ref(), self.position_noise) != Some(true);
         !self.planar && self.lines.is_none() && self.frames.iter().any(unsure)
     }
 
-    /// True if a sheet between clips was seen to leave its plane, and may do so.
+    /// True if a sheet between clips was observed to leave its plane, and may do so in the simulation.
     pub fn is_buckled(&self, frame: &ReplicaFrame) -> bool {
         let seen = flatness(frame.observed.as_ref(), self.position_noise) == Some(false);
         seen && !self.planar && self.lines.is_none()
@@ -263,7 +265,7 @@ impl Replica {
             .map(|frame| blend.shape(&specimen.mesh, |node| grip.place(specimen, frame, node)))
             .collect();
         let bends = parts.components.iter().any(|component| component.is_bending());
-        // A sheared sheet that nobody saw may have buckled.
+        // A sheared sheet of unobserved shape may have buckled.
         let leaves_plane = |shape: &Option<Vec<f64>>| match flatness(shape.as_ref(), self.position_noise) {
             Some(flat) => !flat,
             None => sequence.kind.holding() == Holding::PictureFrame,
@@ -300,7 +302,7 @@ impl Replica {
         let extensions: Vec<f64> =
             starts.iter().map(|x| grip.extension(sequence.kind, specimen, x)).collect();
         let largest = extensions.iter().fold(0.0f64, |m, &e| m.max(e));
-        // A clip bears its own weight, and that of the cloth inside it.
+        // A clip carries its own weight and that of the cloth inside it.
         let weights: Vec<Vector3<f64>> = sequence
             .clips
             .iter()
@@ -309,7 +311,7 @@ impl Replica {
             .collect();
         for (index, ((frame, start), observed)) in sequence.frames.iter().zip(starts).zip(shapes).enumerate()
         {
-            // A sheet without shear that is not stretched is singular: such a frame carries no information.
+            // An unstretched sheet without shear stiffness is singular: such a frame carries no information.
             if extensions[index] <= 1e-3 * largest {
                 continue;
             }
@@ -375,7 +377,7 @@ fn cloth(
     tied: &[Vec<usize>],
     planar: bool,
 ) -> Result<Cloth> {
-    // What stays in its plane does not bend.
+    // A sheet that stays in its plane does not bend.
     let bends = |component: &Component| component.is_bending() && planar;
     let components: Vec<Component> = parts.components.iter().copied().filter(|c| !bends(c)).collect();
     Cloth::new(&Problem {
@@ -392,7 +394,7 @@ fn cloth(
     .map_err(|source| Error::Mechanics { context: sequence.name.clone(), source })
 }
 
-/// Refuses cells in which springs would not be what they are meant for.
+/// Rejects cells too long for springs.
 fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result<()> {
     let [dx, dy] = specimen.grid.cell();
     if !model.is_of_springs() || dx.max(dy) < LONGEST_SPRING_CELL * dx.min(dy) {
@@ -404,12 +406,13 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
         &sequence.name,
         format!("springs in cells of {dx:.2e} m × {dy:.2e} m"),
         format!(
-            "cells at most 2.4 times as long as wide: nodes by the specimen's sides, as {columns}x{rows}"
+            "cells at most 2.4 times as long as wide: nodes in proportion to the specimen's sides, e.g. \
+             {columns}x{rows}"
         ),
     ))
 }
 
-/// True if the clips' nodes leave their common plane z = const so little that flattening changes no strain noticeably.
+/// True if the clips' nodes leave their common plane z = const so little that flattening hardly changes any strain.
 fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool {
     let heights = (0..group_of.len()).filter(|&node| group_of[node].is_some()).map(|node| x[3 * node + 2]);
     let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
@@ -417,8 +420,8 @@ fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool
     high - low <= FLAT_SLOPE * side
 }
 
-/// Whether an observed shape stays in its plane, but for what noise makes of it; `None` where less than half of it was
-/// seen, no height was, or noise could hide a buckle.
+/// True if an observed shape stays in its plane within noise; `None` if less than half of it was observed, no height
+/// was, or noise could hide a buckle.
 fn flatness(shape: Option<&Vec<f64>>, noise: Option<f64>) -> Option<bool> {
     let shape = shape?;
     let heights: Vec<f64> = shape.iter().skip(2).step_by(3).copied().filter(|z| z.is_finite()).collect();
@@ -437,7 +440,7 @@ fn flatness(shape: Option<&Vec<f64>>, noise: Option<f64>) -> Option<bool> {
     (deviation <= 3.0 * CLEAR).then_some(true)
 }
 
-/// Loading while the extension grows.
+/// Loading while the extension increases.
 fn phase_of(extensions: &[f64], index: usize) -> Phase {
     let [before, after] = [index.saturating_sub(1), (index + 1).min(extensions.len() - 1)];
     match extensions[index] - extensions[before] {
@@ -459,7 +462,7 @@ mod tests {
             let z = |node: usize| if node >= seen { f64::NAN } else { height * f64::from(node as u8 % 2) };
             (0..100).flat_map(|node| [0.0, 0.0, z(node)]).collect()
         };
-        // Waves deviate by half their height.
+        // The deviation of waves is half their height.
         assert_eq!(flatness(Some(&waves(1e-4, 100)), Some(7.5e-5)), Some(true));
         assert_eq!(flatness(Some(&waves(1e-3, 100)), Some(7.5e-5)), Some(false));
         assert_eq!(flatness(Some(&waves(1e-3, 100)), None), Some(false));

@@ -1,4 +1,4 @@
-//! The specimen as the simulation sees it: a regular grid over the measured rest rectangle, in a frame of its own.
+//! The specimen in the simulation: a regular grid over the measured rest rectangle, in a frame of its own.
 //!
 //! ```text
 //! measured mesh (any triangulation, any place in space)        specimen frame
@@ -15,7 +15,7 @@ use cloth_data::rectangle::{Rectangle, bounds};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Vector2, Vector3};
 
-/// Cells along the two sides of a square specimen unless told otherwise: 25×25 nodes.
+/// Default number of cells along each side of a square specimen: 25×25 nodes.
 const DEFAULT_CELLS: usize = 24;
 
 /// The simulation's grid over a measured specimen.
@@ -27,15 +27,15 @@ pub struct Specimen {
     pub mesh: Mesh,
     /// The grid.
     pub grid: Grid,
-    /// Where each grid node lies in the measured mesh.
+    /// Position of each grid node in the measured mesh.
     pub samples: Vec<MeshPoint>,
-    /// Cloth inside each clip that was cut off, m².
+    /// Cloth inside each clip, cut off from the grid, m².
     pub gripped: Vec<f64>,
 }
 
 impl Specimen {
-    /// Lays a grid over a sequence's rest mesh, less what lies inside bars that grip a whole side: that cloth moves rigidly,
-    /// and the grid's border falls on the bar's edge, wherever that is.
+    /// Lays a grid over a sequence's rest mesh, without the cloth inside bars that grip a whole side: it moves
+    /// rigidly, and the grid's border lies on the bar's edge, wherever that is.
     ///
     /// * `nodes` — columns and rows; `None` = as many cells as 25×25 nodes have, near square
     ///
@@ -91,7 +91,7 @@ fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2]
             let near = 1e-3 * size[along];
             let whole_side = to[across] - from[across] > 0.98 * size[across];
             let deep = to[along] - from[along];
-            // A bar deeper than half the specimen is none.
+            // Anything deeper than half the specimen is not a bar.
             if !whole_side || deep > 0.5 * size[along] {
                 continue;
             }
@@ -109,12 +109,13 @@ fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2]
     ([low, high], gripped)
 }
 
-/// Columns and rows that make cells near square, with about as many nodes as 25×25: crossed cells have one more each.
+/// Columns and rows for nearly square cells, with about as many nodes as 25×25; crossed cells have one more node
+/// each.
 pub(crate) fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
     let cells =
         (DEFAULT_CELLS * DEFAULT_CELLS) as f64 / if diagonals == Diagonals::Crossed { 2.0 } else { 1.0 };
     let count = |length: f64, side: f64| (length / side).round().max(2.0);
-    // The shorter side first, since it takes fewer cells: the longer one then meets their size better.
+    // The shorter side first: it has fewer cells, and the longer side then matches their size better.
     let shorter = width.min(height);
     let side = shorter / count(shorter, (width * height / cells).sqrt());
     [width, height].map(|length| count(length, side) as usize + 1)

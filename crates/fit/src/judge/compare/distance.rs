@@ -1,4 +1,4 @@
-//! How far simulated tests are from measured ones, in figures that can be set side by side.
+//! Distances between simulated and measured tests, as comparable figures.
 
 use crate::incremental::FitReport;
 use crate::judge::prediction::Prediction;
@@ -7,24 +7,24 @@ use cloth_data::frame::{MeasurementSet, Sequence};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// How far some sequences are from their measurement.
+/// Distance of some sequences from their measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Distance {
     /// Root mean square over all measured force components, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rms_force_n: Option<f64>,
-    /// Root mean square over frames of the distance of observed nodes, m, of the sequences without forces.
+    /// Root mean square node distance over frames, m, of the sequences without forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rms_position_m: Option<f64>,
     /// The overall figure: see [`compare`](crate::judge::compare).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
-    /// Frames without an equilibrium, which take no part.
+    /// Skipped frames: no equilibrium.
     pub dropped: usize,
 }
 
 impl Distance {
-    /// Of the sequences that were fitted, with the last curves.
+    /// Of the fitted sequences, with the final curves.
     pub(super) fn of_fit(set: &MeasurementSet, report: &FitReport) -> Self {
         let (mut sequences, mut dropped) = (Vec::new(), 0);
         for (stage, sequence) in report.sequences() {
@@ -34,7 +34,7 @@ impl Distance {
         Self::new(set, &sequences, dropped)
     }
 
-    /// Of sequences that were predicted.
+    /// Of predicted sequences.
     pub(super) fn of_prediction(set: &MeasurementSet, prediction: &Prediction) -> Self {
         Self::new(set, &prediction.sequences.iter().collect::<Vec<_>>(), prediction.dropped.len())
     }
@@ -51,7 +51,7 @@ impl Distance {
     }
 }
 
-/// The residual of a sequence as a share of what was measured.
+/// The residual of a sequence as a share of its measured size.
 fn relative(set: &MeasurementSet, report: &SequenceReport) -> Option<f64> {
     let (residual, scale) = match report.force_rms {
         Some(rms) => (rms, report.force_largest),
@@ -63,7 +63,7 @@ fn relative(set: &MeasurementSet, report: &SequenceReport) -> Option<f64> {
     (scale > 0.0).then(|| residual / scale)
 }
 
-/// The largest measured way of a vertex, m: below the table's plane, or from its place at rest.
+/// The largest measured travel of a vertex, m: below the table's plane, or from its rest position.
 fn travel(sequence: &Sequence) -> f64 {
     let normal = sequence.table.map(|table| {
         let [edge, outward] = [table.edge_direction, table.outward].map(Vector3::from);
@@ -76,7 +76,7 @@ fn travel(sequence: &Sequence) -> f64 {
     let shapes = sequence.frames.iter().filter_map(|frame| frame.positions.as_ref());
     let ways =
         shapes.flat_map(|shape| sequence.mesh.positions.iter().zip(shape).map(|(rest, now)| way(rest, now)));
-    // A vertex that was not observed is NaN, which never is the largest.
+    // An unobserved vertex is NaN, which `max` ignores.
     ways.fold(0.0, f64::max)
 }
 
@@ -85,7 +85,7 @@ pub(super) fn root_mean_square(values: impl Iterator<Item = f64>) -> Option<f64>
     pooled(values.map(|value| (value, 1)))
 }
 
-/// Root mean square of groups of which the root mean square and the size are known.
+/// Root mean square over groups with known root mean square and size.
 fn pooled(groups: impl Iterator<Item = (f64, usize)>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for (rms, size) in groups {

@@ -1,4 +1,4 @@
-//! One sequence left out at a time, where others still show its components: is it predicted?
+//! Leave-one-out: predicts each sequence from the others, where they still show its components.
 
 use super::distance::Distance;
 use crate::incremental::{self, FitReport, Stage};
@@ -15,18 +15,18 @@ use serde::{Deserialize, Serialize};
 pub struct LeftOut {
     /// Its name.
     pub sequence: String,
-    /// Components that no other sequence shows. Then nothing is predicted.
+    /// Components that no other sequence shows; if any, there is no prediction.
     pub lost: Vec<Component>,
-    /// Why the others could not be fitted, or this one not be predicted.
+    /// The error, if the other sequences could not be fitted or this one not predicted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-    /// How far the prediction of the others is from it.
+    /// Distance of the prediction from the measurement.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<Distance>,
 }
 
 impl LeftOut {
-    /// The overall figure; `None` if it could not be predicted.
+    /// The overall figure; `None` without a prediction.
     pub fn relative(&self) -> Option<f64> {
         self.distance?.relative
     }
@@ -58,7 +58,7 @@ fn one(
     let mut result = LeftOut { sequence: left_out.name.clone(), lost, failure: None, distance: None };
     if result.lost.is_empty() {
         match predicted(&rest, &with(set, |sequence| sequence.name == left_out.name), settings, watch) {
-            // A sequence may be of the right kind and still not tell.
+            // A sequence of the right kind may still not determine the component.
             Ok((_, missing)) if missing.iter().any(known) => {
                 result.lost = missing.into_iter().filter(known).collect();
             }
@@ -69,7 +69,7 @@ fn one(
     result
 }
 
-/// How well a fit of the rest predicts one sequence, and the components that it does not know.
+/// Predicts one sequence from a fit of the rest; also returns the components that the fit does not know.
 fn predicted(
     rest: &MeasurementSet,
     alone: &MeasurementSet,
@@ -82,7 +82,7 @@ fn predicted(
     Ok((Distance::of_prediction(alone, &prediction), report.missing()))
 }
 
-/// The sequences of a set that are to be kept.
+/// The sequences of a set that `keep` selects.
 fn with(set: &MeasurementSet, keep: impl Fn(&Sequence) -> bool) -> MeasurementSet {
     MeasurementSet {
         fabric: set.fabric.clone(),
@@ -90,7 +90,7 @@ fn with(set: &MeasurementSet, keep: impl Fn(&Sequence) -> bool) -> MeasurementSe
     }
 }
 
-/// True if some sequence is of a kind that shows a component, or the one it shares its curve with.
+/// True if some sequence is of a kind that shows a component, or the one that shares its curve.
 fn is_shown(set: &MeasurementSet, component: Component, settings: &Settings) -> bool {
     let pairs =
         [[Component::StretchWeft, Component::StretchWarp], [Component::BendWeft, Component::BendWarp]];

@@ -1,4 +1,4 @@
-//! Which model in which variant is best.
+//! Ranks models and variants.
 
 use super::row::{Criterion, Row};
 use super::table;
@@ -8,15 +8,15 @@ use serde::Serialize;
 #[must_use]
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// What ranks them.
+    /// Criterion of the ranking.
     pub ranked_by: Criterion,
     /// One row each.
     pub rows: Vec<Row>,
 }
 
 impl Comparison {
-    /// Ranks rows. Those that lost frames which others kept come after these, since their figure is of an easier test;
-    /// those without the figure that ranks come last.
+    /// Ranks rows. Rows that dropped frames which others kept come after those, since their figure is of an easier
+    /// test; rows without the ranking figure come last.
     pub fn new(mut rows: Vec<Row>) -> Self {
         let ranked_by = if rows.iter().any(|row| row.figure(Criterion::Validation).is_some()) {
             Criterion::Validation
@@ -35,17 +35,17 @@ impl Comparison {
 
     /// The text of `compare.json`.
     pub fn to_json(&self) -> String {
-        // Strings and finite numbers: nothing here can fail to be JSON.
+        // Strings and finite numbers only: serialisation cannot fail.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 
-    /// The text of `compare.csv`: a row each, empty where there is nothing to tell.
+    /// The text of `compare.csv`: one row per entry, empty cells where a figure does not exist.
     pub fn to_csv(&self) -> String {
         table::csv(&self.rows)
     }
 }
 
-/// Where one variant could spare a sequence and another could not, their figures are of different tests.
+/// Figures are comparable only if every variant left out the same sequences.
 fn all_spare_the_same(rows: &[Row]) -> bool {
     let spared = |row: &Row| -> Vec<String> {
         let predicted = row.left_out.iter().filter(|left| left.relative().is_some());

@@ -1,4 +1,4 @@
-//! One model in one variant, in figures.
+//! One model in one variant, as figures.
 
 use super::distance::Distance;
 use super::leave_out::LeftOut;
@@ -15,21 +15,21 @@ pub struct Row {
     pub model: Model,
     /// The variant.
     pub variant: Variant,
-    /// Why there is no fit, if there is none.
+    /// Error of the fit, if it failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
     /// Control values of all observed curves; a shared one counts once.
     pub parameters: usize,
-    /// Components that no sequence shows, or not well enough.
+    /// Components that no sequence determines.
     pub missing: Vec<Component>,
-    /// On the sequences that were fitted.
+    /// Distance on the fitted sequences.
     pub fit: Distance,
-    /// On those left for validation, if there are any.
+    /// Distance on the validation sequences, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub validation: Option<Distance>,
-    /// Every sequence left out in turn, if asked for.
+    /// Every sequence left out in turn, if requested.
     pub left_out: Vec<LeftOut>,
-    /// Overall figure of the sequences left out; `None` if none could be spared.
+    /// Overall figure of the left-out sequences; `None` if none could be spared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub leave_one_out: Option<f64>,
     /// Equilibria sought in the fit.
@@ -38,11 +38,11 @@ pub struct Row {
     pub factorisations: usize,
     /// Wall time of the fit, s.
     pub seconds: f64,
-    /// Every stage came to its minimum.
+    /// Every stage converged.
     pub converged: bool,
 }
 
-/// Whose overall figure ranks.
+/// The overall figure that ranks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
@@ -55,7 +55,7 @@ pub enum Criterion {
 }
 
 impl Row {
-    /// A row for what could not be fitted.
+    /// A row for a failed fit.
     pub fn failed(settings: &Settings, error: &Error) -> Self {
         Self {
             model: settings.model,
@@ -74,7 +74,7 @@ impl Row {
         }
     }
 
-    /// Frames without an equilibrium, which an overall figure does not see.
+    /// Frames without an equilibrium, which an overall figure does not include.
     pub(super) fn dropped(&self, criterion: Criterion) -> usize {
         match criterion {
             Criterion::Validation => self.validation.map_or(0, |distance| distance.dropped),
@@ -82,7 +82,7 @@ impl Row {
         }
     }
 
-    /// An overall figure; `None` if there is nothing to tell it by.
+    /// An overall figure; `None` if it does not exist.
     pub fn figure(&self, criterion: Criterion) -> Option<f64> {
         match criterion {
             Criterion::Validation => self.validation?.relative,

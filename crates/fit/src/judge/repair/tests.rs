@@ -37,7 +37,7 @@ fn every_kind_of_defect_is_repaired() {
         let Repair { rms, largest, at, .. } = repaired(given);
         assert!(0.0 < rms && rms <= largest && (0.0..=0.4).contains(&at));
     }
-    // Only what has to change does: the stress before the fall stays.
+    // The change is local: the stress before the fall stays.
     let Repair { curve, at, .. } = repaired(&given[2]);
     assert!(at > 0.1 && (curve.stress(0.02) / given[2].stress(0.02) - 1.0).abs() < 0.2);
 }
@@ -84,7 +84,7 @@ fn the_repair_is_the_minimum_that_a_polished_solve_finds() {
         if found.is_unchanged() {
             continue;
         }
-        // The same scale, so that the problems are the same.
+        // The same scale, so that both problems are the same.
         let lowest = 1e-3 * (1.0 + MARGIN) * extremes(&found.curve).largest_stiffness;
         let problem = Problem::new(&given);
         let mut jacobian = problem.stress.clone();

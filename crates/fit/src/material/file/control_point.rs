@@ -1,30 +1,30 @@
-//! A control point in `material.json`, whose keys tell its unit.
+//! A control point in `material.json`; its keys state its unit.
 
 use cloth_data::io::json_file::there;
 use cloth_sim::material::{Component, Model};
 use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use serde::{Deserialize, Serialize};
 
-/// A control point. Its keys in the file tell its unit: see [`Unit`].
+/// A control point. Its keys in the file state its unit: see [`Unit`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Keys", into = "Keys")]
 pub struct ControlPoint {
-    /// The model's own strain; that of hinges in 1/m.
+    /// Strain in the model's measure; for hinges in 1/m.
     pub strain: f64,
     /// Stiffness.
     pub stiffness: f64,
-    /// Standard deviation of the stiffness; `None` where no frame sees it.
+    /// Standard deviation of the stiffness; `None` if no frame observes it.
     pub deviation: Option<f64>,
-    /// Of stiffness and deviation.
+    /// Unit of stiffness and deviation.
     pub unit: Unit,
 }
 
 /// The unit of a stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// N/m over a strain without unit: `stiffness_n_per_m`, `deviation_n_per_m`.
+    /// N/m, over a dimensionless strain: `stiffness_n_per_m`, `deviation_n_per_m`.
     NewtonPerMetre,
-    /// N·m over the strain of hinges, 1/m: `stiffness_n_m`, `deviation_n_m`.
+    /// N·m, over the hinge strain, 1/m: `stiffness_n_m`, `deviation_n_m`.
     NewtonMetre,
 }
 
@@ -35,7 +35,7 @@ impl Unit {
     }
 }
 
-/// A control point as it stands in the file: the stiffness under one of two keys.
+/// A control point as written in the file: the stiffness under one of two keys.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
@@ -48,7 +48,7 @@ struct Keys {
     stiffness_n_m: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     deviation_n_m: Option<f64>,
-    /// What the strain and the stiffness of hinges are to a rolled sheet.
+    /// Physical measures of the hinges' strain and stiffness: curvature and flexural rigidity of a rolled sheet.
     #[serde(default, deserialize_with = "there", skip_serializing_if = "Option::is_none")]
     curvature_per_m: Option<f64>,
     #[serde(default, deserialize_with = "there", skip_serializing_if = "Option::is_none")]
@@ -56,7 +56,7 @@ struct Keys {
 }
 
 impl Keys {
-    /// Refuses a curvature or a rigidity that is not what hinges make of strain and stiffness.
+    /// Rejects a curvature or rigidity inconsistent with the hinges' strain and stiffness.
     fn check_physical(&self) -> Result<(), &'static str> {
         let strain =
             self.curvature_per_m.map(|curvature| (HINGE_STRAIN_PER_CURVATURE * curvature, self.strain));
@@ -67,7 +67,7 @@ impl Keys {
             true => Ok(()),
             false => Err(
                 "a contradiction, expected strain three times curvature_per_m and rigidity_n_m three times \
-                          stiffness_n_m (leave curvature_per_m and rigidity_n_m out after an edit)",
+                          stiffness_n_m (after an edit, omit curvature_per_m and rigidity_n_m)",
             ),
         }
     }

@@ -1,4 +1,4 @@
-//! What `material.json` says of one curve and of one sequence.
+//! Entries of `material.json` for one curve and one sequence.
 
 use super::control_point::{ControlPoint, Unit};
 use crate::equilibria::DroppedFrame;
@@ -17,51 +17,51 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CurveEntry {
-    /// False if the measurements do not tell even the curve's scale; then it has no control points.
+    /// False if the measurements do not even determine the curve's scale; it then has no control points.
     pub observed: bool,
-    /// True if the curve was given to the fit, not found by it: the entry is that of the file it came from.
+    /// True if the fit took the curve as known: the entry is copied from the file that contained it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub given: bool,
-    /// The components that share the curve, if there are several.
+    /// Components that share the curve, if there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shared_by: Vec<Component>,
-    /// How far to trust it, and why not farther.
+    /// Verdict on the curve, with reasons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
     /// The control points of k(ε), a Hermite spline: docs/model.md.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub control_points: Vec<ControlPoint>,
-    /// The strains that the measurement visited.
+    /// Range of strains visited by the measurement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub visited_strain: Option<[f64; 2]>,
-    /// Share of the range of control points that was visited, 0 … 1.
+    /// Visited share of the range of control points, 0 … 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub share_visited: Option<f64>,
-    /// Directions of the control values that the data see.
+    /// Number of directions of the control values that the data determine.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rank: Option<usize>,
-    /// Control points that no frame sees, counted from 0.
+    /// Control points that no frame observes, counted from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unseen_points: Vec<usize>,
     /// Control values correlated above 0.95.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub correlations: Vec<Correlation>,
-    /// Constraints that hold the solution.
+    /// Number of active constraints at the solution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub active_constraints: Option<usize>,
-    /// Noise of one force component, N: given, or estimated.
+    /// Noise of one force component, N: given or estimated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_n: Option<f64>,
-    /// What the model cannot follow beyond that noise, N; 0 if nothing.
+    /// Model misfit beyond that noise, N; 0 if none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misfit_n: Option<f64>,
-    /// Noise of one coordinate, m, where shapes were fitted.
+    /// Noise of one coordinate, m, if shapes were fitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_m: Option<f64>,
-    /// What the model cannot follow beyond that noise, m; 0 if nothing.
+    /// Model misfit beyond that noise, m; 0 if none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misfit_m: Option<f64>,
-    /// What the fit took as known.
+    /// Curves that the fit took as known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub basis: Option<Basis>,
     /// First or second pass.
@@ -70,15 +70,15 @@ pub struct CurveEntry {
     /// Frames used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames: Option<usize>,
-    /// The fit came to its minimum.
+    /// True if the fit converged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub converged: Option<bool>,
-    /// What helped the fit along; absent where nothing did.
+    /// Numerical interventions; omitted if there were none.
     #[serde(default, skip_serializing_if = "Interventions::none")]
     pub interventions: Interventions,
 }
 
-/// A pair of control values that the data hardly tell apart.
+/// A pair of control values that the data hardly separate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Correlation {
@@ -89,7 +89,7 @@ pub struct Correlation {
 }
 
 impl CurveEntry {
-    /// What a stage found; nothing but `observed: false` without one.
+    /// The entry for a stage's result; without a stage, only `observed: false`.
     pub(super) fn new(stage: Option<&StageReport>, notices: &[Notice]) -> Self {
         let Some(stage) = stage else { return Self::default() };
         let report = &stage.curve;
@@ -120,7 +120,7 @@ impl CurveEntry {
         }
     }
 
-    /// The curve of its control points; or the control point that makes none, and why.
+    /// The curve through the control points; or the index of an invalid control point, and the reason.
     pub(super) fn curve(
         &self,
         model: Model,
@@ -130,8 +130,8 @@ impl CurveEntry {
         let points = &self.control_points;
         if let Some(point) = points.iter().position(|point| point.unit != Unit::of(model, component)) {
             let reason = match Unit::of(model, component) {
-                Unit::NewtonPerMetre => "stiffness_n_m, where stiffness_n_per_m belongs",
-                Unit::NewtonMetre => "stiffness_n_per_m, where stiffness_n_m belongs",
+                Unit::NewtonPerMetre => "stiffness_n_m instead of stiffness_n_per_m",
+                Unit::NewtonMetre => "stiffness_n_per_m instead of stiffness_n_m",
             };
             return Err((point, reason.into()));
         }
@@ -156,46 +156,46 @@ fn control_points(stage: &StageReport) -> Vec<ControlPoint> {
         .collect()
 }
 
-/// How a sequence was met.
+/// Residuals of a sequence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ResidualEntry {
     /// Name of the sequence.
     pub sequence: String,
-    /// Which test.
+    /// Kind of test.
     pub kind: Kind,
     /// Frames used.
     pub frames: usize,
-    /// Root mean square over all measured force components, N, where forces were measured.
+    /// Root mean square over all measured force components, N, if forces were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rms_force_n: Option<f64>,
-    /// Largest measured force component, N, where forces were measured.
+    /// Largest measured force component, N, if forces were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_force_n: Option<f64>,
-    /// Root mean square over all observed nodes, m, where shapes were measured.
+    /// Root mean square over all observed nodes, m, if shapes were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rms_position_m: Option<f64>,
-    /// Measured stiffness on loading over the curve's.
+    /// Ratio of the measured loading stiffness to the curve's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loading_stiffness: Option<f64>,
-    /// Measured stiffness on unloading over the curve's.
+    /// Ratio of the measured unloading stiffness to the curve's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading_stiffness: Option<f64>,
-    /// Frames that left an unstable equilibrium: they may have several.
+    /// Frames whose solve left an unstable equilibrium: they may have several equilibria.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub multi_stable_frames: Vec<usize>,
-    /// Frames whose residual stands out from its neighbours', the farthest first.
+    /// Frames whose residual stands out from its neighbours', the largest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outlier_frames: Vec<usize>,
-    /// Frames whose equilibrium was not found; they take no part.
+    /// Skipped frames: their equilibrium was not found.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub dropped_frames: Vec<usize>,
 }
 
 impl ResidualEntry {
-    /// What the report of a sequence says.
+    /// The entry for the report of a sequence.
     ///
-    /// * `dropped` — the frames without an equilibrium, of any sequences
+    /// * `dropped` — frames without an equilibrium, of any sequence
     pub fn new(sequence: &SequenceReport, dropped: &[DroppedFrame]) -> Self {
         let lost = dropped.iter().filter(|dropped| dropped.sequence == sequence.name);
         Self {

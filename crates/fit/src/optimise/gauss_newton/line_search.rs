@@ -1,11 +1,11 @@
-//! The whole step of the linear model, halved until it is no worse: the published outer loop.
+//! The whole step of the linear model, halved until F does not grow: the published outer loop.
 //!
 //! ```text
 //! p = argmin ‖J p − r‖²  subject to  A (k + p) ≥ b          tried are k + p, k + p/2, k + p/4 … until F does not grow
 //! ```
 //!
-//! It ends with the first step that lowers F by no more than the tolerance, or where no step helps and the model promises no
-//! more than that.
+//! It ends with the first step that lowers F by no more than the tolerance, or when no step lowers F and the
+//! predicted gain is within the tolerance.
 //!
 //! Source: Miguel et al. 2012, §5.1.
 
@@ -16,10 +16,10 @@ use super::region::{Scale, Step};
 use super::state::{State, accepted_state};
 use crate::optimise::least_squares::Status as StepStatus;
 
-/// A smaller share of a step is not tried.
+/// Smallest share of a step that is tried.
 const SHORTEST: f64 = 1.0 / 1024.0;
 
-/// Goes down from a state within the domain.
+/// Descends from a state within the domain.
 pub(super) fn descend<P: Residuals>(
     problem: &mut P,
     mut state: State,
@@ -42,7 +42,7 @@ pub(super) fn descend<P: Residuals>(
             break Status::StepFailed { status: step.status };
         }
         let solved = step.status == StepStatus::Optimal;
-        // What is not solved proves no minimum.
+        // An inaccurate step proves no minimum.
         if length <= options.step_tolerance && !solved {
             break Status::StepFailed { status: step.status };
         }

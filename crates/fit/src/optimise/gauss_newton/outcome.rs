@@ -1,4 +1,4 @@
-//! What a nonlinear fit hands back: where it ended, why, and every step on the way.
+//! Outcome of a nonlinear fit: final point, status, and every step.
 
 use crate::optimise::least_squares::{Active, Status as StepStatus};
 use nalgebra::{DMatrix, DVector};
@@ -10,28 +10,28 @@ use std::fmt;
 pub struct Iteration {
     /// From 1.
     pub iteration: usize,
-    /// Sum of squares after it: of the new point if accepted, else still of the old.
+    /// Sum of squares after the step: at the new point if accepted, else at the old one.
     pub sum_of_squares: f64,
-    /// Share of the sum of squares that the step took away, negative if it added; `None` if the trial point could not
-    /// be evaluated.
+    /// Relative decrease of the sum of squares, negative for an increase; `None` if the trial point could not be
+    /// evaluated.
     pub gain: Option<f64>,
-    /// Share that the linear model promised.
+    /// Relative decrease predicted by the linear model.
     pub promised: f64,
-    /// Length of the step as a share of the point, both as ‖D ·‖.
+    /// Length of the step as a share of the point, both in the norm ‖D ·‖.
     pub step: f64,
     /// Δ of this step, as a share of the point; infinite in a line search.
     pub radius: f64,
-    /// Whether the step was kept.
+    /// True if the step was accepted.
     pub accepted: bool,
-    /// Whether the linearised problem that it comes from was solved to the last digit.
+    /// True if the linearised problem of the step was solved to full accuracy.
     pub solved: bool,
-    /// Rank of the Jacobian it was computed from.
+    /// Rank of the Jacobian of the step.
     pub rank: usize,
-    /// Rows of A that the step rests on.
+    /// Rows of A active at the step.
     pub active: Vec<Active>,
 }
 
-/// How a fit ended.
+/// Status of a fit at its end.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Status {
     /// The sum of squares no longer falls.
@@ -44,36 +44,36 @@ pub enum Status {
         /// The tolerance met.
         tolerance: f64,
     },
-    /// What is left to gain is below the noise of the residuals themselves (rounding, equilibria solved to a
+    /// The gain still possible is below the noise of the residuals themselves (rounding, equilibria solved to a
     /// tolerance).
     Noise {
-        /// The share of the sum of squares that the linear model still promises.
+        /// Relative decrease that the linear model still predicts.
         promised: f64,
     },
-    /// No step, however short, lowered the sum of squares as promised.
+    /// No step, however short, lowered the sum of squares as predicted.
     Stalled {
-        /// Why the last trial point could not be evaluated, if that was it.
+        /// The error of the last trial point, if it could not be evaluated.
         reason: Option<String>,
     },
-    /// Too many steps.
+    /// The limit on steps was reached.
     IterationLimit {
         /// The limit.
         limit: usize,
     },
     /// The start could not be evaluated.
     StartFailed {
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A linearised step could not be solved, or the inequalities contradict one another.
     StepFailed {
-        /// Why.
+        /// The reason.
         status: StepStatus,
     },
 }
 
 impl Status {
-    /// Whether the point is a minimum, to the tolerances.
+    /// True if the point is a minimum, within the tolerances.
     pub fn converged(&self) -> bool {
         matches!(self, Self::SmallGain { .. } | Self::SmallStep { .. } | Self::Noise { .. })
     }
@@ -87,10 +87,7 @@ impl fmt::Display for Status {
             }
             Self::SmallStep { tolerance } => write!(f, "the parameters moved by less than {tolerance:.0e}"),
             Self::Noise { promised } => {
-                write!(
-                    f,
-                    "what is left to gain, a share of {promised:.0e}, is below the noise of the residual"
-                )
+                write!(f, "the possible gain, a share of {promised:.0e}, is below the noise of the residual")
             }
             Self::Stalled { reason: None } => write!(f, "no step, however short, lowered the residual"),
             Self::Stalled { reason: Some(reason) } => {
@@ -103,7 +100,7 @@ impl fmt::Display for Status {
     }
 }
 
-/// What a fit found.
+/// Result of a fit.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Outcome {
@@ -115,11 +112,11 @@ pub struct Outcome {
     pub jacobian: DMatrix<f64>,
     /// ‖residual‖², NaN if the start could not be evaluated.
     pub sum_of_squares: f64,
-    /// Why it stopped.
+    /// Status at the end.
     pub status: Status,
     /// Every step tried.
     pub iterations: Vec<Iteration>,
-    /// The start broke an inequality, and was moved to the nearest point that breaks none.
+    /// The start violated an inequality and was moved to the nearest point that satisfies all.
     pub projected: bool,
 }
 

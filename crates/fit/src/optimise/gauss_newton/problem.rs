@@ -1,55 +1,57 @@
-//! What is minimised: residuals with their derivative, under linear inequalities.
+//! The problem: residuals with their derivative, under linear inequalities.
 
 use crate::optimise::robust::Robust;
 use nalgebra::{DMatrix, DVector};
 
 /// A fitted model: residuals and their derivative at any point.
 pub trait Residuals {
-    /// What makes going on pointless (a file gone, misuse). A point that cannot be evaluated is no error: see
+    /// An error that ends the fit (a missing file, misuse). A point that cannot be evaluated is not one: see
     /// [`Evaluation::Failed`].
     type Error;
 
     /// Evaluates at a point.
     ///
-    /// Every trial point is evaluated once, with the Jacobian: after an equilibrium its factorisation is at hand and
-    /// serves the sensitivities too. Where the Jacobian is dear, see [`super::Options::jacobian_at_trials`].
+    /// Every trial point is evaluated once, with the Jacobian: the factorisation of an equilibrium also serves the
+    /// sensitivities. If the Jacobian is expensive, see [`super::Options::jacobian_at_trials`].
     ///
     /// # Errors
-    /// Ends the fit and is handed through.
+    /// Ends the fit and is returned to the caller.
     fn evaluate(&mut self, point: &DVector<f64>, jacobian: bool) -> Result<Evaluation, Self::Error>;
 
-    /// How residuals and their Jacobian have been bent, the same at all points of a fit: its curvature enters the steps.
+    /// The robust transformation of the residuals and their Jacobian, constant during a fit; the steps use its
+    /// curvature.
     fn robust(&self) -> Option<Robust> {
         None
     }
 }
 
-/// What became of an evaluation.
+/// Result of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Evaluation {
-    /// It succeeded. Numbers that are not finite count as failed.
+    /// Success. Non-finite numbers count as failure.
     Values {
         /// Measured − simulated, each divided by its noise.
         residual: DVector<f64>,
-        /// ∂ simulated / ∂ point, divided by the same noise; needed only if asked for.
+        /// ∂ simulated / ∂ point, divided by the same noise; needed only if requested.
         jacobian: Option<DMatrix<f64>>,
     },
-    /// The model has no answer at this point, for instance no equilibrium: the step is rejected, the region shrinks.
+    /// The model has no answer at this point, for instance no equilibrium: the step is rejected and the region
+    /// shrinks.
     Failed {
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         reason: String,
     },
 }
 
-/// The inequalities A k ≥ b, and what to prefer where data see nothing.
+/// The inequalities A k ≥ b, and the preference for directions that the data do not see.
 #[derive(Debug, Clone)]
 pub struct Domain {
     /// A.
     pub rows: DMatrix<f64>,
     /// b.
     pub bounds: DVector<f64>,
-    /// S of [`Smoothing`](crate::optimise::least_squares::Smoothing): the total point is made smooth where the data see nothing. Without it such directions
-    /// stay where they start.
+    /// S of [`Smoothing`](crate::optimise::least_squares::Smoothing): smooths the total point where the data see
+    /// nothing. Without it such directions stay at their start.
     pub roughness: Option<DMatrix<f64>>,
 }
 
@@ -91,7 +93,7 @@ fn block_diagonal(blocks: &[&DMatrix<f64>]) -> DMatrix<f64> {
 
 pub(super) type Values = (DVector<f64>, Option<DMatrix<f64>>);
 
-/// The values of an evaluation, or why there are none.
+/// The values of an evaluation, or the reason for their absence.
 pub(super) fn values(evaluation: Evaluation) -> Result<Values, String> {
     match evaluation {
         Evaluation::Failed { reason } => Err(reason),

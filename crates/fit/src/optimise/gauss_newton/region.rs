@@ -1,40 +1,41 @@
-//! One step: the linear model within the inequalities and the trust region, bent along the curve of the last step.
+//! One step: the linear model within the inequalities and the trust region, bent along the curvature of the last
+//! step.
 //!
-//! The region is an ellipsoid, kept by damping: minimise ‖J p − r‖² + μ ‖D p‖² with the smallest μ that suffices.
-//! A box would join the inequalities for nothing, but it lets unknowns that the data hardly see run to its corners
-//! for a negligible gain, and loses NIST's MGH17 so from every radius tried.
+//! The region is an ellipsoid, imposed by damping: minimise ‖J p − r‖² + μ ‖D p‖² with the smallest sufficient μ. A
+//! box would join the inequalities at no cost, but it lets unknowns that the data hardly see run to its corners for a
+//! negligible gain, and therefore fails on NIST's MGH17 from every radius tried.
 
 use super::problem::Domain;
 use super::state::State;
 use crate::optimise::least_squares::{Active, LeastSquares, Smoothing, Solution, Status, Triangle};
 use nalgebra::{DMatrix, DVector};
 
-/// A step may be longer than the radius by this factor, or shorter by its inverse: more precision buys nothing.
+/// A step may exceed the radius by this factor, or fall short by its inverse; more precision gains nothing.
 const WIDER: f64 = 1.1;
 
-/// The bend may be at most this share of the step.
+/// Maximum size of the bend, as a share of the step.
 const BEND: f64 = 0.375;
 
-/// The last step tells the curvature along the next one if the cosine between the two is above this.
+/// Minimum cosine between two successive steps for the last one to predict the curvature along the next.
 const ALIGNED: f64 = 0.8;
 
-/// A step to try.
+/// A trial step.
 pub(super) struct Step {
     /// p.
     pub(super) step: DVector<f64>,
-    /// ‖D p‖ of what the data see of it, before bending.
+    /// ‖D p‖ of the part that the data see, before bending.
     pub(super) seen: f64,
-    /// Share of the sum of squares that the linear model promises, before bending.
+    /// Relative decrease of the sum of squares predicted by the linear model, before bending.
     pub(super) promised: f64,
-    /// What it would promise without the region.
+    /// The predicted decrease without the region.
     pub(super) whole_promise: f64,
-    /// Whether the region shortened it.
+    /// True if the region shortened the step.
     pub(super) cut: bool,
-    /// Rows that it rests on.
+    /// Active rows.
     pub(super) active: Vec<Active>,
     /// Rank of J.
     pub(super) rank: usize,
-    /// Of the undamped problem.
+    /// Status of the undamped problem.
     pub(super) status: Status,
 }
 
@@ -62,7 +63,7 @@ impl Step {
             step = bend.apply(step, state, &linear, scale, damping);
         }
         if let (Some(roughness), true) = (&domain.roughness, rank < step.len()) {
-            // J p = J step, and where the data see nothing the smoothest total within the region.
+            // J p = J step, and the smoothest total within the region where the data see nothing.
             let widths = DVector::from_fn(step.len(), |j, _| (radius / scale.of(j)).max(step[j].abs()));
             let smoothest = LeastSquares {
                 target: &linear.jacobian * &step,
@@ -87,11 +88,10 @@ fn damped(linear: &LeastSquares, scale: &Scale, damping: f64) -> LeastSquares {
     problem
 }
 
-/// Finds the damping for a step of about the length of the radius, within a bracket: 1/‖D p(μ)‖ is nearly linear in
-/// μ (Hebden).
+/// Finds the damping for a step of about the radius, within a bracket: 1/‖D p(μ)‖ is nearly linear in μ (Hebden).
 fn shortened(linear: &LeastSquares, scale: &Scale, radius: f64, length: f64) -> (Solution, f64) {
     let slope = linear.jacobian.tr_mul(&linear.target);
-    // ‖D p(μ)‖ ≤ ‖D⁻¹ Jᵀ r‖ / μ wherever p = 0 is allowed.
+    // ‖D p(μ)‖ ≤ ‖D⁻¹ Jᵀ r‖ / μ where p = 0 is feasible.
     let most = (0..slope.len()).map(|j| slope[j] / scale.of(j)).fold(0.0, f64::hypot) / radius;
     let (mut low, mut high) = ((0.0, length), (most, None));
     let mut damping = most * (radius / length).max(1e-3);
@@ -105,7 +105,7 @@ fn shortened(linear: &LeastSquares, scale: &Scale, radius: f64, length: f64) -> 
         } else {
             break;
         }
-        // The secant through both ends where both are known, but every third time the geometric middle.
+        // Secant through both ends if both are known; every third time the geometric mean.
         damping = match high.1 {
             Some(shorter) if attempt % 3 != 2 => {
                 let part = (1.0 / radius - 1.0 / low.1) / (1.0 / shorter - 1.0 / low.1);
@@ -118,18 +118,18 @@ fn shortened(linear: &LeastSquares, scale: &Scale, radius: f64, length: f64) -> 
     (solution, damping)
 }
 
-/// What an accepted step v told of the curvature along it: the Jacobian at both of its ends gives, for nothing,
+/// Curvature along an accepted step v. The Jacobians at its two ends give it at no cost:
 ///
 /// ```text
 /// f″[v, v] ≈ (J(k + v) − J(k)) v
 /// ```
 ///
-/// A step p that goes on in about the same direction, p ≈ τ v, is bent by solving it again for the residual
-/// r − ½ τ² f″. In the long curved valleys where Gauss–Newton creeps this halves the steps: over the 38
-/// runs of NIST's lower and average problems 750 in all instead of 1350.
+/// A step p in about the same direction, p ≈ τ v, is bent by solving it again for the residual r − ½ τ² f″. In the
+/// long curved valleys where Gauss–Newton is slow this halves the number of steps: over the 38 runs of NIST's lower
+/// and average problems, 750 in all instead of 1350.
 ///
-/// Source: Transtrum & Sethna, Improvements to the Levenberg-Marquardt algorithm (2012), geodesic acceleration;
-/// differs in taking f″ from the last step instead of from one more evaluation.
+/// Source: Transtrum & Sethna, Improvements to the Levenberg-Marquardt algorithm (2012), geodesic acceleration; here
+/// f″ comes from the last step instead of another evaluation.
 pub(super) struct Bend {
     step: DVector<f64>,
     second: DVector<f64>,
@@ -160,7 +160,7 @@ impl Bend {
         let Triangle { matrix, target, .. } = Triangle::reduce(&state.jacobian, &curved);
         let curved = LeastSquares { jacobian: matrix, target, ..linear.clone() };
         let aside = damped(&curved, scale, damping).solve().point - &straight;
-        // Both ends meet the inequalities, so does everything between them.
+        // Both ends satisfy the inequalities, hence every point between them.
         let share = (BEND * length / scale.norm(&aside)).min(1.0);
         straight + share * aside
     }
@@ -178,7 +178,7 @@ impl Scale {
         self.0 = self.0.sup(&Self::new(jacobian).0);
     }
 
-    /// d_j, 1 for a column that has been zero throughout.
+    /// d_j; 1 for a column that has always been zero.
     fn of(&self, j: usize) -> f64 {
         if self.0[j] == 0.0 { 1.0 } else { self.0[j] }
     }
@@ -188,7 +188,7 @@ impl Scale {
         (0..step.len()).map(|j| self.of(j) * step[j]).fold(0.0, f64::hypot)
     }
 
-    /// ‖D k‖, 1 for zero.
+    /// ‖D k‖; 1 if it is zero.
     pub(super) fn norm_or_one(&self, point: &DVector<f64>) -> f64 {
         let norm = self.norm(point);
         if norm == 0.0 { 1.0 } else { norm }

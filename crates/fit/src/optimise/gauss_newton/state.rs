@@ -5,7 +5,7 @@ use crate::optimise::least_squares::{LeastSquares, Triangle};
 use crate::optimise::robust::Robust;
 use nalgebra::{DMatrix, DVector};
 
-/// A point that has been evaluated.
+/// An evaluated point.
 pub(super) struct State {
     pub(super) point: DVector<f64>,
     pub(super) residual: DVector<f64>,
@@ -33,8 +33,8 @@ impl State {
         Self { point, residual, jacobian, triangle }
     }
 
-    /// The share of the sum of squares that another residual is smaller by. As a product: from sums of squares that
-    /// agree to ten digits six would be left.
+    /// Relative decrease of the sum of squares for another residual. Computed as a product: a difference of sums that
+    /// agree to ten digits would keep only six.
     pub(super) fn gain(&self, residual: &DVector<f64>) -> f64 {
         (&self.residual - residual).dot(&(&self.residual + residual)) / self.residual.norm_squared()
     }
@@ -45,9 +45,9 @@ impl State {
         moved.dot(&(2.0 * &self.triangle.target - &moved)) / self.residual.norm_squared()
     }
 
-    /// The linear model under the inequalities of a step.
+    /// The linear model of a step, with the inequalities.
     pub(super) fn linear(&self, domain: &Domain) -> LeastSquares {
-        // What is left of a row at a point that rests on it is the rounding of its terms: that is zero.
+        // At a point that rests on a row, the remainder of the row is the rounding of its terms: set to zero.
         let bounds = DVector::from_fn(domain.bounds.len(), |i, _| {
             let terms = (0..self.point.len()).map(|j| domain.rows[(i, j)] * self.point[j]);
             let (sum, size) =
@@ -60,7 +60,8 @@ impl State {
     }
 }
 
-/// The state at a point that was accepted: with its Jacobian, which may not have been asked for yet; or why it has none.
+/// The state at an accepted point, with its Jacobian, evaluated now if it was not before; or the reason why there is
+/// none.
 pub(super) fn accepted_state<P: Residuals>(
     problem: &mut P,
     point: DVector<f64>,

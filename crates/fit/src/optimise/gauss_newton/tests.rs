@@ -19,7 +19,7 @@ fn matrix<const N: usize>(rows: &[[f64; N]]) -> DMatrix<f64> {
 type C = Complex<f64>;
 type Model = fn(&[C], f64) -> C;
 
-/// y = model(b, x) at some x, measured; derivatives by complex steps.
+/// y = model(b, x) at given x, as measurements; derivatives by complex steps.
 struct Curve {
     model: Model,
     at: Vec<f64>,
@@ -28,7 +28,7 @@ struct Curve {
 }
 
 impl Curve {
-    /// Measured without or with noise.
+    /// Measurements without or with noise.
     fn new(model: Model, truth: &[f64], at: Vec<f64>, noise: f64) -> Self {
         let b: Vec<C> = truth.iter().map(|&value| C::from(value)).collect();
         let mut random = StdRng::seed_from_u64(5);
@@ -98,7 +98,7 @@ fn assert_close(found: &DVector<f64>, wanted: &[f64], tolerance: f64) {
 
 #[test]
 fn known_parameters_are_found_from_far() {
-    // Formulas, sizes and starts of NIST's Misra1a, Kirby2, Lanczos3 and MGH17, whose own data are tested elsewhere.
+    // Formulas, sizes and starts of NIST's Misra1a, Kirby2, Lanczos3 and MGH17; their own data are tested elsewhere.
     type Case<'a> = (Model, &'a [f64], Vec<f64>, &'a [f64]);
     let cases: [Case; 4] = [
         (saturation, &[239.0, 5.5e-4], steps(14, 55.0), &[500.0, 1e-4]),
@@ -146,7 +146,7 @@ fn bounds_active_at_the_solution_agree_with_enumeration() {
     let truth = [2.0, 0.5, 1.0, 0.05];
     let model: Model = |b, x| b[0] * (-b[1] * x).exp() + b[2] * (-b[3] * x).exp();
     let start = [1.0, 1.0, 0.5, 0.02];
-    // At most these, each sometimes below what the data want.
+    // Upper limits, some of them below the optimum.
     for caps in [[1.8, 1.0, 2.0, 1.0], [5.0, 0.4, 2.0, 0.03], [1.5, 0.3, 0.9, 1.0], [9.0, 9.0, 9.0, 9.0]] {
         let mut best: Option<Outcome> = None;
         for set in 0..16usize {
@@ -176,7 +176,7 @@ fn bounds_active_at_the_solution_agree_with_enumeration() {
     }
 }
 
-/// A curve with some parameters held at their caps.
+/// A curve with some parameters fixed at their caps.
 struct Reduced {
     curve: Curve,
     caps: [f64; 4],
@@ -220,7 +220,7 @@ fn a_start_outside_is_moved_inside() {
     assert_eq!(outcome.status.to_string(), said);
 }
 
-/// Fails where its model has no answer.
+/// A model without an answer in part of its domain.
 struct Fragile {
     curve: Curve,
     most: f64,
@@ -251,7 +251,7 @@ fn points_that_cannot_be_evaluated_are_stepped_around() {
     let outcome = fit(5.6e-4, &mut |iteration| failures += usize::from(iteration.gain.is_none()));
     assert!(failures > 0);
     assert_close(&outcome.point, &[239.0, 5.5e-4], 1e-9);
-    // The solution itself cannot be evaluated: that is said, and the best point kept.
+    // The solution itself cannot be evaluated: the status says so, and the best point is kept.
     let outcome = fit(4e-4, &mut |_| {});
     assert_eq!(outcome.status.to_string(), "no step, however short, could be evaluated: no equilibrium");
     assert!(outcome.point[1] > 3.9e-4 && !outcome.status.converged());
@@ -261,7 +261,7 @@ fn points_that_cannot_be_evaluated_are_stepped_around() {
 
 #[test]
 fn unseen_parameters_are_smoothed_and_do_not_disturb() {
-    // Only the first two of five values matter.
+    // Only the first two of five parameters matter.
     let model: Model = |b, x| (b[0] * x).exp() + b[1] * b[1] * x + b[2] * 0.0 + b[3] * 0.0 + b[4] * 0.0;
     let roughness =
         DMatrix::from_fn(3, 5, |i, j| [1.0, -2.0, 1.0].get(j.wrapping_sub(i)).copied().unwrap_or(0.0));
@@ -354,7 +354,7 @@ fn jacobians_on_demand_change_nothing_but_the_count() {
     assert!(later.evaluations > at_once.evaluations);
 }
 
-/// A misfit of 100 that is 1e-7 larger wherever it is not evaluated first, beside k − 1.
+/// A misfit of 100, larger by 1e-7 of it away from the first evaluated point, beside 1 − k.
 struct Rough {
     first: Option<f64>,
 }
@@ -372,7 +372,7 @@ impl Residuals for Rough {
     }
 }
 
-/// From 0.97 the linear model promises a share of 9e-8, which every step loses in the roughness.
+/// From 0.97 the linear model predicts a gain of 9e-8, but every step is worse by the roughness.
 #[test]
 fn a_gain_below_the_tolerance_that_roughness_hides_is_no_failure() {
     let fit = |gain_tolerance| {
@@ -386,7 +386,7 @@ fn a_gain_below_the_tolerance_that_roughness_hides_is_no_failure() {
     assert!(matches!(fit(1e-13), Status::Stalled { reason: None }));
 }
 
-/// A curve's residuals, bent.
+/// A curve's robust residuals.
 struct Bent(Curve, Robust);
 
 impl Residuals for Bent {

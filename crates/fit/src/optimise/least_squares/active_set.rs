@@ -1,11 +1,11 @@
-//! The polish: from a point near the solution to the solution, by holding rows as equations.
+//! The polish: moves a point near the solution to the solution, holding rows as equations.
 //!
-//! An interior-point solution is a few digits; which rows hold it there is nearly always known from it. With these
-//! held the problem is a plain least-squares problem in what is left of the space, solved to rounding. A wrong guess
-//! is corrected as in any primal active-set method: a row met on the way is added; at the end of the way the
-//! multipliers of all rows met are computed as a non-negative least-squares problem, and where they do not balance the
-//! gradient, what is left of it leads on. (Letting go of one row with a negative multiplier after the other can run
-//! in circles where more rows meet than the space has dimensions, as the rows of a curve do at zero stiffness.)
+//! An interior-point solution has a few correct digits, which nearly always reveal the active rows. With these held,
+//! the problem is a plain least-squares problem in the remaining space, solved to rounding. A wrong guess is
+//! corrected as in any primal active-set method: a row met on the way is added; at the end of the way the multipliers
+//! of all rows met are computed as a non-negative least-squares problem, and if they do not balance the gradient, the
+//! search continues along the remainder. (Dropping rows with negative multipliers one by one can cycle where more
+//! rows meet than the space has dimensions, as the rows of a curve do at zero stiffness.)
 //!
 //! Sources: Nocedal & Wright, Numerical Optimization (2006), algorithm 16.3; Lawson & Hanson, Solving Least Squares
 //! Problems (1974), chapter 23.
@@ -15,7 +15,7 @@ use super::kkt::Held;
 use super::scaled::Scaled;
 use nalgebra::DVector;
 
-/// Polishes a start, with the rows that seem to hold it in `working`.
+/// Polishes a start; `working` holds the rows that seem active.
 pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) -> Held {
     let rows = &problem.rows;
     let count = rows.nrows();
@@ -48,7 +48,7 @@ pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) 
             working.push(row);
             continue;
         }
-        // A last step that was long leaves its rounding behind: go once more.
+        // A long last step leaves rounding behind: repeat once.
         if step.amax() + snap.amax() > 1e-8 * point.amax() && !repeated {
             repeated = true;
             continue;
@@ -59,7 +59,7 @@ pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) 
         let tight = (0..count).filter(|&row| problem.slack(row, &point) <= 1e-12 * problem.size(row, &point));
         multipliers = pushes(problem, &tight.collect::<Vec<_>>(), &gradient, rounding);
         let downhill = rows.tr_mul(&multipliers) - &gradient;
-        // Every return to this line lies lower, or there is nothing left but rounding.
+        // Every pass must lower the cost; otherwise only rounding is left.
         let cost = (&problem.matrix * &point - &problem.target).norm_squared();
         if downhill.amax() <= rounding || cost >= lowest {
             break;
@@ -75,7 +75,7 @@ pub(super) fn polish(problem: &Scaled, start: &DVector<f64>, working: &[usize]) 
     Held { point, multipliers }
 }
 
-/// The λ ≥ 0 over some rows with ‖Gᵀλ − gradient‖ least (Lawson & Hanson); zero for all other rows.
+/// The λ ≥ 0 over some rows with the least ‖Gᵀλ − gradient‖ (Lawson & Hanson); zero for all other rows.
 fn pushes(problem: &Scaled, among: &[usize], gradient: &DVector<f64>, rounding: f64) -> DVector<f64> {
     let mut multipliers = DVector::zeros(problem.rows.nrows());
     let mut pushing: Vec<usize> = Vec::new();
@@ -89,7 +89,7 @@ fn pushes(problem: &Scaled, among: &[usize], gradient: &DVector<f64>, rounding: 
             break;
         }
         while let Some(wanted) = Split::by(&problem.rows, &pushing).multipliers(gradient) {
-            // On the way to the wanted values stop where the first turns negative, and let that row go.
+            // Stops where the first multiplier turns negative, and drops that row.
             let part = |i: usize| multipliers[pushing[i]] / (multipliers[pushing[i]] - wanted[i]);
             let first =
                 (0..pushing.len()).filter(|&i| wanted[i] <= 0.0).min_by(|&i, &j| part(i).total_cmp(&part(j)));
@@ -104,7 +104,7 @@ fn pushes(problem: &Scaled, among: &[usize], gradient: &DVector<f64>, rounding: 
     multipliers
 }
 
-/// The row that a step meets first, and after which fraction of it.
+/// The row that a step meets first, and the fraction of the step up to there.
 fn first_met(
     problem: &Scaled,
     point: &DVector<f64>,
@@ -122,7 +122,7 @@ fn first_met(
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The row most violated beyond rounding that can still be held beside the others.
+/// The row most violated beyond rounding and independent of the held ones.
 fn violated(problem: &Scaled, point: &DVector<f64>, working: &[usize]) -> Option<usize> {
     let mut rows: Vec<(usize, f64)> = (0..problem.rows.nrows())
         .filter(|row| !working.contains(row))

@@ -1,20 +1,20 @@
-//! Small dense factorisations: tall systems to triangles, singular values, and the split of a space by a set of rows.
+//! Small dense factorisations: triangles of tall systems, singular values, and the split of a space by a set of rows.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values of the column-scaled system up to this share of the largest count as zero.
 ///
-/// The triangle is known to some n·ε of its largest singular value, 1e-14; measured and simulated Jacobians repeat to
-/// 1e-8 at best along any direction. What lies below 1e-10 is not data.
+/// The triangle is accurate to some n·ε of its largest singular value, 1e-14; measured and simulated Jacobians repeat
+/// to 1e-8 at best along any direction. Below 1e-10 there is no data.
 pub const RANK_TOLERANCE: f64 = 1e-10;
 
-/// Rows reduced at a time: with some forty columns the working block stays in the cache.
+/// Rows per reduction: with some forty columns the working block fits the cache.
 const BLOCK: usize = 256;
 
-/// Sweeps of the Jacobi method; convergence is quadratic and takes about ten.
+/// Maximum number of Jacobi sweeps; convergence is quadratic and takes about ten.
 const SWEEPS: usize = 60;
 
-/// A least-squares system of any height as an upper triangle with the same minimiser.
+/// A least-squares system of any height, reduced to an upper triangle with the same minimiser.
 ///
 /// ```text
 /// ‖J p − y‖² = ‖R p − c‖² + rest²      [J y] = Q [R c; 0 rest]
@@ -25,15 +25,15 @@ pub struct Triangle {
     pub matrix: DMatrix<f64>,
     /// c, n.
     pub target: DVector<f64>,
-    /// What no p can take away: the norm of the residual where the columns are independent.
+    /// The residual that no p can remove: its norm if the columns are independent.
     pub rest: f64,
 }
 
 impl Triangle {
-    /// Reduces `[J y]` block of rows by block of rows (Householder), so that a hundred thousand rows cost one pass.
+    /// Reduces `[J y]` by blocks of rows (Householder): a hundred thousand rows cost one pass.
     ///
     /// # Panics
-    /// When the matrix and the target differ in height.
+    /// If the matrix and the target differ in height.
     pub fn reduce(jacobian: &DMatrix<f64>, target: &DVector<f64>) -> Self {
         let (height, n) = jacobian.shape();
         assert_eq!(height, target.len(), "a row of the Jacobian for every entry of the target");
@@ -56,8 +56,8 @@ impl Triangle {
 
 /// Singular values and right singular vectors, M V = U Σ, largest first.
 ///
-/// By one-sided Jacobi rotations: accurate for tiny singular values too, which is what a rank is read from. (The
-/// bidiagonal method of the linear-algebra crate returns wrong values on some matrices, an all-ones 3×5 for one.)
+/// By one-sided Jacobi rotations: accurate even for tiny singular values, which determine the rank. (The bidiagonal
+/// method of the linear-algebra crate returns wrong values on some matrices, for one an all-ones 3×5.)
 #[derive(Debug, Clone)]
 pub(super) struct Spectrum {
     /// σ, largest first.
@@ -94,7 +94,7 @@ impl Spectrum {
         }
     }
 
-    /// How many singular values lie above a threshold.
+    /// Number of singular values above a threshold.
     pub(super) fn rank(&self, threshold: f64) -> usize {
         self.values.iter().filter(|&&value| value > threshold).count()
     }
@@ -131,7 +131,7 @@ fn orthogonalise(left: &mut DMatrix<f64>, right: &mut DMatrix<f64>, p: usize, q:
     true
 }
 
-/// The space split by independent rows `G`: what they see and what they do not.
+/// The space split by independent rows `G`: their range and their null space.
 ///
 /// ```text
 /// Gᵀ = Y T      G Z = 0      [Y Z] orthonormal, T upper triangular
@@ -143,7 +143,7 @@ pub(super) struct Split {
 }
 
 impl Split {
-    /// Splits by the rows of `rows` listed in `chosen`.
+    /// Splits by the rows of `rows` with indices `chosen`.
     pub(super) fn by(rows: &DMatrix<f64>, chosen: &[usize]) -> Self {
         let (n, w) = (rows.ncols(), chosen.len());
         if w == 0 {
@@ -157,7 +157,7 @@ impl Split {
         let mut transposed = DMatrix::identity(n, n);
         factors.q_tr_mul(&mut transposed);
         let whole = transposed.transpose();
-        // The factorisation's own signs: Y T = Gᵀ holds for T read off as Yᵀ Gᵀ, whatever they are.
+        // T is read off as Yᵀ Gᵀ, so that Y T = Gᵀ holds for any signs of the factorisation.
         let range = whole.columns(0, w).into_owned();
         let triangle = DMatrix::from_fn(w, w, |i, j| match i <= j {
             true => (0..n).map(|l| range[(l, i)] * rows[(chosen[j], l)]).sum(),
@@ -166,7 +166,7 @@ impl Split {
         Self { range, null: whole.columns(w, n - w).into_owned(), triangle }
     }
 
-    /// The shortest s with G s = values; `None` where the rows depend on one another.
+    /// The shortest s with G s = values; `None` if the rows are dependent.
     pub(super) fn shortest(&self, values: &DVector<f64>) -> Option<DVector<f64>> {
         Some(&self.range * self.triangle.tr_solve_upper_triangular(values)?)
     }
@@ -177,7 +177,7 @@ impl Split {
     }
 }
 
-/// Of `candidates`, in their order, those whose unit rows are independent of the ones before.
+/// The subset of `candidates`, in their order, whose unit rows are independent of the preceding ones.
 pub(super) fn independent(rows: &DMatrix<f64>, candidates: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut chosen = Vec::new();

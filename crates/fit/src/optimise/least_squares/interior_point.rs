@@ -1,4 +1,4 @@
-//! The interior-point method, from clarabel: the only file that names it.
+//! The interior-point method, wrapping clarabel; no other file uses it.
 
 pub(super) use clarabel::solver::SolverStatus;
 
@@ -12,16 +12,16 @@ pub(super) struct Program<'a> {
     pub(super) curvature: &'a [f64],
     /// c.
     pub(super) slope: &'a [f64],
-    /// A; its zeros cost nothing.
+    /// A; zeros are not stored.
     pub(super) system: &'a DMatrix<f64>,
     /// b.
     pub(super) right: &'a [f64],
-    /// How many of the rows are equations.
+    /// Number of equations among the rows.
     pub(super) equations: usize,
 }
 
 impl Program<'_> {
-    /// x, the multipliers of all rows, and how it ended; `None` if the method could not even start.
+    /// x, the multipliers of all rows, and the status; `None` if the method could not start.
     pub(super) fn solve(&self) -> Option<(Vec<f64>, Vec<f64>, SolverStatus)> {
         let n = self.curvature.len();
         let diagonal = CscMatrix::new(n, n, (0..=n).collect(), (0..n).collect(), self.curvature.to_vec());

@@ -1,4 +1,4 @@
-//! A point with its multipliers, and how far the two are from optimal.
+//! A point with its multipliers, and its distance from optimality.
 
 use nalgebra::DVector;
 
@@ -9,7 +9,7 @@ pub(super) struct Held {
     pub(super) multipliers: DVector<f64>,
 }
 
-/// How far a point is from satisfying the conditions of optimality, in scaled unknowns; every figure is relative.
+/// Violation of the optimality conditions, in scaled unknowns; every figure is relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kkt {
     /// Largest entry of gradient − Gᵀλ, over ‖y‖ + ‖q‖.

@@ -1,4 +1,4 @@
-//! The minimiser of a scaled problem: free, or from the interior-point solution polished.
+//! The minimiser of a scaled problem: unconstrained, or polished from the interior-point solution.
 
 use super::active_set::polish;
 use super::interior_point::{Program, SolverStatus};
@@ -7,12 +7,12 @@ use super::scaled::{Scaled, unit_or};
 use nalgebra::{DMatrix, DVector};
 
 impl Scaled {
-    /// The minimiser, and whether the interior-point method called the rows contradictory.
+    /// The minimiser; true if the interior-point method found the rows contradictory.
     pub(super) fn minimise(&self) -> (Held, bool) {
         let free = self.spectrum.solve(&self.target, self.threshold);
         let multipliers = DVector::zeros(self.rows.nrows());
         if (0..self.rows.nrows()).all(|row| self.slack(row, &free) >= 0.0) {
-            // Twice: the second solve takes the rounding of the first out.
+            // The second solve removes the rounding of the first.
             let rounding = self.spectrum.solve(&(&self.target - &self.matrix * &free), self.threshold);
             let refined = &free + rounding;
             let feasible = (0..self.rows.nrows()).all(|row| self.slack(row, &refined) >= 0.0);
@@ -25,7 +25,7 @@ impl Scaled {
         } else {
             interior
         };
-        // A row holds the solution where its multiplier outweighs its slack, each in its own unit.
+        // A row is active if its multiplier exceeds its slack, each in its own unit.
         let (gradient, size) = (self.gradient_scale(&start.point), unit_or(start.point.amax()));
         let holds = |row: usize| start.multipliers[row] / gradient > self.slack(row, &start.point) / size;
         let (mut working, loose): (Vec<usize>, Vec<usize>) =
@@ -37,8 +37,8 @@ impl Scaled {
         (if better { polished } else { start }, refused)
     }
 
-    /// The interior-point method on the small problem. The unknowns are measured in the length of the solution: its tolerances are
-    /// absolute, so a first answer far shorter than assumed is computed again.
+    /// The interior-point method on the small problem. The unknowns are scaled by the length of the solution, since
+    /// its tolerances are absolute; a first answer far shorter than assumed is computed again.
     fn interior_point(&self, free: &DVector<f64>) -> (Held, SolverStatus) {
         let needed = self.bounds.iter().copied().fold(0.0, f64::max);
         let mut length = unit_or(free.amax().max(needed));
@@ -54,7 +54,7 @@ impl Scaled {
         (held, status)
     }
 
-    /// With q = ℓ x and t = R x, so that R is not squared:
+    /// With q = ℓ x and t = R x, to avoid squaring R:
     ///
     /// ```text
     /// minimise ½ (ℓ/β) ‖t‖² − (c/β)·t   subject to   R x − t = 0,  G x ≥ h/ℓ      β = max(ℓ, ‖Rᵀc‖∞)

@@ -1,7 +1,7 @@
-//! A problem of many unknowns with few in each row, to the digits of the interior-point method alone.
+//! A problem of many unknowns with few in each row, to the accuracy of the interior-point method alone.
 //!
-//! The polish of [`LeastSquares::solve`] works on dense matrices, and takes minutes for 200 unknowns under thousands of
-//! rows. Where a few digits do, this takes a fraction of a second.
+//! The polish of [`LeastSquares::solve`] works on dense matrices and takes minutes for 200 unknowns under thousands
+//! of rows. This takes a fraction of a second, where a few digits suffice.
 
 use super::LeastSquares;
 use super::interior_point::{Program, SolverStatus};
@@ -9,8 +9,8 @@ use super::scaled::unit_or;
 use nalgebra::{DMatrix, DVector};
 
 impl LeastSquares {
-    /// The minimiser to about 1e-5 of its size, without any polish; directions that the data do not see are left to the
-    /// method. `smoothing` has no effect. `None` where the method finds no solution.
+    /// The minimiser to about 1e-5 of its size, without polish; the method decides directions that the data do not
+    /// see. `smoothing` has no effect. `None` if the method finds no solution.
     ///
     /// With p = ℓ x/norms, t = J p/ℓ and rows of unit length:
     ///
@@ -19,15 +19,19 @@ impl LeastSquares {
     /// ```
     ///
     /// # Panics
-    /// Where the shapes do not fit together.
+    /// On inconsistent shapes.
     pub fn solve_unpolished(&self) -> Option<DVector<f64>> {
         let (m, n) = self.jacobian.shape();
-        assert_eq!((m, n), (self.target.len(), self.lower.len()), "a row a target, a column an unknown");
+        assert_eq!(
+            (m, n),
+            (self.target.len(), self.lower.len()),
+            "a row for every target, a column for every unknown"
+        );
         if !self.is_finite() {
             return None;
         }
         let mut norms = DVector::from_iterator(n, self.jacobian.column_iter().map(|column| column.norm()));
-        // A column that only rows hold is measured like the others.
+        // A column that appears only in the rows is scaled by the mean column norm.
         let typical = unit_or(norms.mean());
         norms.iter_mut().filter(|norm| **norm == 0.0).for_each(|norm| *norm = typical);
         let (_, mut rows, mut bounds) = self.inequalities();

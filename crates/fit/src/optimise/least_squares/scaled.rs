@@ -1,11 +1,11 @@
-//! One least-squares problem with unit columns and unit rows, and how far a point is from its solution.
+//! One least-squares problem with unit columns and unit rows, and the distance of a point from its solution.
 
 use super::dense::{RANK_TOLERANCE, Spectrum, Triangle};
 use super::kkt::{Held, Kkt};
 use nalgebra::{DMatrix, DVector};
 
-/// Minimise ½‖R q − c‖² subject to G q ≥ h, with `q = norms ∘ p` so that the columns of R have unit length, as have
-/// the rows of G.
+/// Minimises ½‖R q − c‖² subject to G q ≥ h, with `q = norms ∘ p`: the columns of R and the rows of G have unit
+/// length.
 pub(super) struct Scaled {
     /// R, n×n.
     pub(super) matrix: DMatrix<f64>,
@@ -17,13 +17,13 @@ pub(super) struct Scaled {
     pub(super) rows: DMatrix<f64>,
     /// h.
     pub(super) bounds: DVector<f64>,
-    /// For every row of G the original row and its length.
+    /// Index and length of the original row of each row of G.
     pub(super) origin: Vec<(usize, f64)>,
     /// Singular values of R.
     pub(super) spectrum: Spectrum,
-    /// Singular values up to here count as zero.
+    /// Singular values up to this count as zero.
     pub(super) threshold: f64,
-    /// A zero row that asks for a positive bound.
+    /// True if a zero row requires a positive bound.
     pub(super) impossible: bool,
 }
 
@@ -70,7 +70,7 @@ impl Scaled {
         self.spectrum.rank(self.threshold)
     }
 
-    /// Directions that the system does not see, one a column, in the unscaled variables, to unit length.
+    /// Directions that the system does not see, as unit columns, in the unscaled variables.
     pub(super) fn null_vectors(&self) -> DMatrix<f64> {
         let rank = self.rank();
         let mut vectors = self.spectrum.right.columns(rank, self.columns() - rank).into_owned();
@@ -90,13 +90,13 @@ impl Scaled {
         self.along(row, point) - self.bounds[row]
     }
 
-    /// The size of the numbers that cancel in the slack of a row. Those of the target are among them: a solution
-    /// that the rows press to zero is known to their rounding.
+    /// The size of the numbers that cancel in the slack of a row, including those of the target: a solution that the
+    /// rows press to zero is known only to their rounding.
     pub(super) fn size(&self, row: usize, point: &DVector<f64>) -> f64 {
         unit_or(point.amax() + self.bounds[row].abs() + self.target.amax())
     }
 
-    /// How far a row is violated, relative to the numbers in it; 0 where it holds.
+    /// Relative violation of a row; 0 if it holds.
     pub(super) fn violation(&self, row: usize, point: &DVector<f64>) -> f64 {
         (-self.slack(row, point)).max(0.0) / self.size(row, point)
     }

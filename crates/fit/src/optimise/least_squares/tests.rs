@@ -28,7 +28,7 @@ fn inequalities(problem: &LeastSquares) -> (DMatrix<f64>, DVector<f64>) {
     (rows, bounds)
 }
 
-/// Conditions of optimality from the definition, in the unknowns as given: none of the solver's own figures.
+/// Optimality conditions from the definition, in the given unknowns, without the solver's own figures.
 fn assert_optimal(problem: &LeastSquares, solution: &Solution, tolerance: f64) {
     assert_eq!(solution.status, Status::Optimal, "{:?}", solution.kkt);
     let mut gradient = problem.jacobian.tr_mul(&(&problem.jacobian * &solution.point - &problem.target));
@@ -48,7 +48,7 @@ fn assert_optimal(problem: &LeastSquares, solution: &Solution, tolerance: f64) {
     assert!(slack.min() >= -tolerance, "violated by {:e}", slack.min());
 }
 
-/// The minimiser by trying every set of rows as equations.
+/// The minimiser by enumeration of all sets of rows as equations.
 fn by_enumeration(problem: &LeastSquares) -> DVector<f64> {
     let (rows, bounds) = inequalities(problem);
     let (count, n) = rows.shape();
@@ -90,7 +90,7 @@ fn singular_values_of_matrices_that_broke_others() {
     }
     let mut generator = StdRng::seed_from_u64(1);
     for n in [1, 2, 5, 40] {
-        // Known values over twelve decades.
+        // Known singular values over twelve decades.
         let [left, right] = [n + 3, n].map(|height| random(&mut generator, height, n).qr().q());
         let values = DVector::from_fn(n, |j, _| 10f64.powf(-12.0 * j as f64 / n as f64));
         let spectrum = Spectrum::of(&(left * DMatrix::from_diagonal(&values) * right.transpose()));
@@ -233,7 +233,7 @@ fn second_differences_fill_what_data_do_not_see() {
     assert!((solution.point.rows(0, 3) - &seen).amax() < 1e-14);
     assert!(solution.point.rows(3, 3).amax() < 1e-14);
 
-    // p is a step from k: the total goes on straight.
+    // p is a step from k: the total continues straight.
     let from = vector(&[0.0, 0.0, 0.0, 5.0, -3.0, 7.0]);
     let smooth =
         LeastSquares { smoothing: Some(Smoothing { roughness, point: from.clone() }), ..shortest.clone() };
@@ -246,7 +246,7 @@ fn second_differences_fill_what_data_do_not_see() {
         assert!((total[j] - seen[2] - slope * (j - 2) as f64).abs() < 1e-12, "{total}");
     }
 
-    // A bound in the unseen part bends it, and still does not move what the data see.
+    // A bound in the unseen part bends the total and still does not change the fit to the data.
     let mut capped = smooth;
     capped.upper[5] = seen[2] - from[5];
     let solution = capped.solve();
@@ -259,7 +259,7 @@ fn second_differences_fill_what_data_do_not_see() {
 
 #[test]
 fn the_unseen_part_makes_room_for_the_data() {
-    // The data see p₀ alone; p₀ + p₁ ≤ 1 must not hold it back, though the shortest p₁ is zero.
+    // The data see only p₀; p₀ + p₁ ≤ 1 must not hold it back, though the shortest p₁ is zero.
     let mut problem = LeastSquares::new(matrix(&[[1.0, 0.0]]), vector(&[3.0]));
     problem.rows = matrix(&[[-1.0, -1.0]]);
     problem.bounds = vector(&[-1.0]);
@@ -281,7 +281,7 @@ fn nearly_dependent_columns_are_seen_down_to_the_threshold() {
 
 #[test]
 fn degenerate_rows_are_no_trouble() {
-    // The corner (1, 1) is met by five rows, two of them the same, two an equation; one column is zero.
+    // Five rows meet at the corner (1, 1), two of them identical, two an equation; one column is zero.
     let mut problem = LeastSquares::new(matrix(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), vector(&[3.0, 4.0]));
     problem.rows = matrix(&[
         [-1.0, 0.0, 0.0],
@@ -333,7 +333,7 @@ fn many_rows_through_one_point_and_hidden_directions_are_no_trouble() {
         let m = generator.random_range(0..120);
         let jacobian = random(&mut generator, 2 * n, rank) * random(&mut generator, rank, n);
         let mut problem = LeastSquares::new(jacobian, random_vector(&mut generator, 2 * n) * 10.0);
-        // A cone of small whole numbers with its tip at zero; every other one cut off before the tip.
+        // A cone of small integers with its tip at zero; every other one is cut off before the tip.
         problem.rows = DMatrix::from_fn(m, n, |_, _| match generator.random_bool(0.3) {
             true => f64::from(generator.random_range(-2..3)),
             false => 0.0,

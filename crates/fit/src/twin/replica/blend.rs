@@ -1,12 +1,12 @@
-//! What the clips do, blended over the cloth between them: a harmonic extension.
+//! Blends the motion of the clips over the cloth between them: a harmonic extension.
 
 use cloth_data::measure::moved;
 use cloth_sim::mesh::Mesh;
 use cloth_sim::rigid::nearest_motion;
 use nalgebra::Vector3;
 
-/// Extends values from held nodes over the mesh, so that they solve Laplace's equation with nothing flowing out at the
-/// border. A linear field comes back exactly; a shape that is blended so is smooth and stays between the clips.
+/// Extends values from held nodes over the mesh by Laplace's equation, with zero flux at the border. Linear fields
+/// are reproduced exactly; a blended shape is smooth and stays between the clips.
 #[derive(Debug, Clone)]
 pub(super) struct Blend {
     /// Conductance of every edge: half the cotangents of the angles opposite it (Pinkall and Polthier 1993).
@@ -15,7 +15,7 @@ pub(super) struct Blend {
 }
 
 impl Blend {
-    /// For a flat mesh and the nodes whose values are given.
+    /// For a flat mesh; `held` marks the nodes with given values.
     pub(super) fn new(mesh: &Mesh, held: Vec<bool>) -> Self {
         let mut conductances = Vec::with_capacity(3 * mesh.triangles.len());
         for triangle in &mesh.triangles {
@@ -29,7 +29,7 @@ impl Blend {
         Self { conductances, held }
     }
 
-    /// Replaces the values of all nodes that are not held, by conjugate gradients.
+    /// Computes the values of all free nodes, by conjugate gradients.
     pub(super) fn extend(&self, values: &mut [f64]) {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         values.iter_mut().zip(&self.held).filter(|(_, held)| !**held).for_each(|(value, _)| *value = 0.0);
@@ -37,7 +37,7 @@ impl Blend {
         let mut direction = residual.clone();
         let mut square = dot(&residual, &residual);
         let enough = 1e-28 * square;
-        // In exact arithmetic as many steps as unknowns would do; rounding may ask for a few more.
+        // Exact arithmetic needs as many steps as unknowns; rounding may need a few more.
         for _ in 0..4 * values.len() {
             if square <= enough {
                 break;
@@ -51,10 +51,10 @@ impl Blend {
         }
     }
 
-    /// The shape whose held nodes are where they are told, 3 stacked coordinates a node, m: the sheet as a whole goes along
-    /// with them, and what is left of their motion is blended.
+    /// The shape with the held nodes at given positions, 3 stacked coordinates per node, m: the sheet follows their
+    /// rigid motion, and the remainder is blended.
     ///
-    /// * `place` — where a held node is, given its index
+    /// * `place` — position of a held node, given its index
     pub(super) fn shape(&self, mesh: &Mesh, place: impl Fn(usize) -> Vector3<f64>) -> Vec<f64> {
         let rest = &mesh.positions;
         let held = || (0..mesh.len()).filter(|&node| self.held[node]);
@@ -70,7 +70,7 @@ impl Blend {
         x
     }
 
-    /// What flows out of every free node.
+    /// Flux out of every free node.
     fn outflow(&self, values: &[f64]) -> Vec<f64> {
         let mut flow = vec![0.0; values.len()];
         for &(a, b, conductance) in &self.conductances {

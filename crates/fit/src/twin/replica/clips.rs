@@ -1,4 +1,4 @@
-//! Which nodes the clips hold, and which forces that gives: what a replica takes from a sequence with clips.
+//! Clips in a replica: the nodes that they hold, and the components of their forces.
 
 use super::force_component::ForceComponent;
 use crate::twin::specimen::Specimen;
@@ -9,28 +9,28 @@ use cloth_data::measure::effective_shear;
 use cloth_data::rectangle::bounds;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Lines this near to one another, in cells, are one: rounding.
+/// Lines closer than this, in cells, coincide up to rounding.
 const TIE: f64 = 1e-6;
 
-/// The nodes that clips hold, in groups: one a clip, and one for every pair of clips that share nodes, as two bars of a
-/// picture frame share a corner.
+/// The nodes held by clips, in groups: one per clip, and one for every pair of clips that share nodes, as two bars of
+/// a picture frame share a corner.
 #[derive(Debug, Clone)]
 pub(super) struct Grip {
-    /// The group of each node that is held.
+    /// The group of each held node.
     pub(super) group_of: Vec<Option<usize>>,
     /// The clips of each group.
     pub(super) groups: Vec<[usize; 2]>,
 }
 
 impl Grip {
-    /// The nodes on the grid's lines nearest to each clip's vertices, and between them.
+    /// Holds the nodes on the grid lines nearest to each clip's vertices, and between them.
     ///
-    /// The box around a clip's vertices is widened to whole lines: the centre of a crossed cell is held where all of its
-    /// cell is. By distance alone, half a cell, a clamp would hold a row of centres beyond its edge, and a strip cut on
-    /// the bias be too short to first order in the cell.
+    /// The box around a clip's vertices is widened to whole lines: the centre node of a crossed cell is held if all
+    /// of its cell is. A limit by distance, half a cell, would make a clamp hold a row of centres beyond its edge,
+    /// and a bias strip would be too short to first order in the cell.
     ///
     /// # Errors
-    /// Clips that claim the same node and disagree where it is; a clip without a node of its own.
+    /// Clips that claim the same node and disagree on its position; a clip without a node of its own.
     pub(super) fn new(sequence: &Sequence, specimen: &Specimen) -> Result<Self> {
         let clips = sequence.clips.len();
         let mut grip = Self {
@@ -41,7 +41,7 @@ impl Grip {
         for (clip, gripped) in sequence.clips.iter().enumerate() {
             let places = gripped.vertices.iter().map(|&v| specimen.place(&sequence.mesh.positions[v]).xy());
             let [low, high] = bounds(places);
-            // Of two lines equally near both are held.
+            // If two lines are equally near, both are held.
             let low = low.component_div(&cell).map(|line| (line - 0.5 - TIE).ceil() - TIE);
             let high = high.component_div(&cell).map(|line| (line + 0.5 + TIE).floor() + TIE);
             for node in 0..specimen.mesh.len() {
@@ -55,7 +55,7 @@ impl Grip {
             Some(clip) => Err(Error::geometry(
                 &sequence.name,
                 format!("clip {} holds no node of its own", sequence.clips[clip].name),
-                "clips that do not overlap, on the specimen",
+                "clips on the specimen, without overlap",
             )),
             None => Ok(grip),
         }
@@ -78,8 +78,8 @@ impl Grip {
                     sequence.clips[clip].name,
                     apart(&sequence.frames[frame])
                 ),
-                "clips that do not overlap (they grip what lies within half a simulation cell), and poses that map rest points to where \
-                 they are, x = R(q) x_rest + t",
+                "clips that do not overlap (they grip nodes within half a simulation cell), and poses that map \
+                 rest points to their positions, x = R(q) x_rest + t",
             ));
         }
         let pair = [other, clip];
@@ -91,7 +91,7 @@ impl Grip {
         Ok(())
     }
 
-    /// Where a frame's clips take a held node, in the specimen's frame.
+    /// Position of a held node in a frame of the sequence, in specimen coordinates.
     pub(super) fn place(&self, specimen: &Specimen, frame: &Frame, node: usize) -> Vector3<f64> {
         match self.group_of[node] {
             Some(group) => {
@@ -122,7 +122,7 @@ impl Grip {
         strains.iter().sum::<f64>() / strains.len().max(1) as f64
     }
 
-    /// How far a test went: the effective shear angle (rad) where bars shear, else the mean relative change of distance
+    /// Extension of a test: the effective shear angle (rad) if bars shear, else the mean relative change of distance
     /// between the clips' centres.
     pub(super) fn extension(&self, kind: Kind, specimen: &Specimen, x: &[f64]) -> f64 {
         match kind.extension() {
@@ -138,9 +138,9 @@ impl Grip {
     }
 
     /// The measured components of a frame's clip forces: along the load cell; along each bar's own axis in a picture
-    /// frame; else all of the plane's, or all three.
+    /// frame; else both components in the plane, or all three.
     ///
-    /// * `weights` — what each clip weighs, with the cloth inside it, N
+    /// * `weights` — weight of each clip with the cloth inside it, N
     ///
     /// Source of the rule for shear: Miguel et al. 2012, §5.1.
     pub(super) fn forces(
@@ -158,7 +158,7 @@ impl Grip {
         for (clip, weight) in weights.iter().enumerate() {
             let Some(force) = frame.clip_force(clip) else { continue };
             let force = specimen.turn(&force);
-            // A clip is in balance: cords + its weight = what the cloth pulls with.
+            // Balance of a clip: cord forces + its weight = pull of the cloth.
             let balanced = force + weight;
             let directions = match (sequence.force_direction, sequence.kind.holding()) {
                 (Some(direction), _) => vec![specimen.turn(&direction)],
@@ -178,10 +178,11 @@ impl Grip {
         components
     }
 
-    /// A clip's force along a direction, as a sum over the groups that it holds.
+    /// A clip's force along a direction, as a sum over its groups.
     ///
-    /// Nodes that two bars share pull each along its own axis: f = α t₁ + β t₂ + rest, and the first bar has α t₁ and half
-    /// of the rest. In homogeneous shear, where all traction is along the bars, that gives each its own side exactly.
+    /// The force on nodes shared by two bars is split along the bars' axes: f = α t₁ + β t₂ + rest; the first bar
+    /// takes α t₁ and half of the rest. In homogeneous shear, where all traction is along the bars, each bar gets
+    /// exactly the force of its own side.
     fn parts(
         &self,
         clip: usize,
@@ -209,7 +210,7 @@ impl Grip {
     }
 }
 
-/// Where a clip takes a rest point, in world coordinates.
+/// Position of a rest point moved by a clip, in world coordinates.
 fn moved(frame: &Frame, clip: usize, rest: &Vector3<f64>) -> Vector3<f64> {
     let pose = &frame.poses[clip];
     pose.rotation * rest + pose.translation.vector
@@ -222,6 +223,6 @@ fn long_axis(sequence: &Sequence, clip: usize) -> Vector3<f64> {
     let spread: Matrix3<f64> = points().map(|p| (p - centre) * (p - centre).transpose()).sum();
     let eigen = spread.symmetric_eigen();
     let axis = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
-    // Of the two directions the one whose largest coordinate is positive.
+    // The sign that makes the largest coordinate positive.
     axis * axis[axis.iamax()].signum()
 }

@@ -1,4 +1,4 @@
-//! One measured component of a clip's force, and how a simulation makes it.
+//! One measured component of a clip's force, and its simulated counterpart.
 
 use nalgebra::Vector3;
 
@@ -7,20 +7,20 @@ use nalgebra::Vector3;
 pub struct ForceComponent {
     /// Index of the clip.
     pub clip: usize,
-    /// Which of the clip's components; its direction may turn with the clip.
+    /// Number of the component on its clip; its direction may turn with the clip.
     pub number: usize,
     /// Unit direction.
     pub direction: Vector3<f64>,
     /// The simulated component is Σ force of a group of held nodes · this vector.
     pub parts: Vec<(usize, Vector3<f64>)>,
-    /// What the cords pull with along it, less the clip's weight: what the cloth must balance, N.
+    /// The measured component less that of the clip's weight: the load that the cloth must balance, N.
     pub force: f64,
-    /// What was measured along it, N.
+    /// The measured component, N.
     pub measured: f64,
 }
 
 impl ForceComponent {
-    /// The component, given the force of every group of held nodes.
+    /// The simulated component, given the force of every group of held nodes.
     pub fn of(&self, groups: &[Vector3<f64>]) -> f64 {
         self.parts.iter().map(|(group, vector)| groups[*group].dot(vector)).sum()
     }

@@ -1,4 +1,4 @@
-//! What a table holds of a sheet pushed over its edge, frame by frame.
+//! The table: the lines of a sheet pushed over its edge that are held, frame by frame.
 //!
 //! ```text
 //!        held                     free
@@ -7,8 +7,8 @@
 //!                 edge         ●     the last held segment lies on the free cloth and carries the measured slope
 //! ```
 //!
-//! That is the default. To hold only what lies on the table would make the fitted rigidity far too large: the cloth bends at the edge itself,
-//! which falls between two lines. Each line is seen by many nodes: their middle is what is held.
+//! That is the default. Holding only the part on the table would make the fitted rigidity far too large: the cloth
+//! bends at the edge itself, which falls between two lines. Many nodes observe each line; their mean is held.
 
 use crate::twin::specimen::Specimen;
 use cloth_data::error::{Error, Result};
@@ -16,15 +16,15 @@ use cloth_data::frame::Sequence;
 use cloth_sim::load::Held;
 use nalgebra::Vector3;
 
-/// What a table holds of a sheet, and how the rest of it may move.
+/// Constraint of a sheet on a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TableHold {
-    /// So many lines of nodes past the edge are held. Default 2; published 0: what lies on the table.
+    /// Number of held lines of nodes past the edge. Default 2; published 0: only the part on the table.
     pub past_edge: usize,
-    /// Lines along the edge are straightened and move as a whole, so that the sheet bends as a cylinder. Default true;
-    /// published false: held nodes are where they were seen, and every free one moves by itself.
+    /// Lines along the edge are straightened and move as a whole, so that the sheet bends as a cylinder. Default
+    /// true; published false: held nodes stay as observed, and every free node moves by itself.
     pub cylinder: bool,
-    /// Errors of the places of held lines are weighed in the residuals. Default true; published false.
+    /// Residuals include the position errors of held lines. Default true; published false.
     pub whitened: bool,
 }
 
@@ -35,21 +35,21 @@ impl Default for TableHold {
 }
 
 impl TableHold {
-    /// Only what lies on the table is held. Source: Miguel et al. 2012, §5.1.
+    /// Holds only the part on the table. Source: Miguel et al. 2012, §5.1.
     pub const PUBLISHED: Self = Self { past_edge: 0, cylinder: false, whitened: false };
 }
 
-/// About a single held line a sheet would turn freely.
+/// A sheet held by a single line could rotate freely.
 const FEWEST_HELD: usize = 2;
 
-/// A sheet must reach so many times farther out than it does across: its sides then are along the edge within about 4°.
+/// Minimum ratio of a sheet's reach outward to its reach across: its sides are then along the edge within about 4°.
 const STRAIGHT: f64 = 12.0;
 
-/// Fewer free lines than this say nothing of bending.
+/// Minimum number of free lines: fewer carry no information on bending.
 const FEWEST_FREE: usize = 3;
 
-/// A node so many times farther off its line than the median node is a stray: 9 standard deviations of noise. Distances of
-/// rounding, m, are none.
+/// A node farther off its line than this multiple of the median distance is a stray: 9 standard deviations of noise.
+/// Distances up to rounding, m, are not.
 const STRAY: f64 = 6.0;
 const ROUNDING: f64 = 1e-9;
 
@@ -63,22 +63,22 @@ pub(super) struct Lines {
     hold: TableHold,
 }
 
-/// What is held in one frame, and the shape to start from.
+/// The held lines in one frame, and the start shape.
 #[derive(Debug, Clone)]
 pub(super) struct Overhang {
-    /// How many lines are held.
+    /// Number of held lines.
     pub(super) held: usize,
     /// Length of cloth past the edge, m.
     pub(super) length: f64,
-    /// Nodes that were seen too far off their line to tell its place.
+    /// Nodes too far off their line to be used for its position.
     pub(super) left_out: usize,
-    /// Every line straightened or, if the sheet is no cylinder, every node that was seen where it was seen; 3 stacked
-    /// coordinates a node, m.
+    /// Every line straightened or, if the sheet is no cylinder, every observed node as observed; 3 stacked
+    /// coordinates per node, m.
     pub(super) start: Vec<f64>,
 }
 
 impl Lines {
-    /// Finds which way the lines run from the observed shapes.
+    /// Determines the direction of the lines from the observed shapes.
     ///
     /// # Errors
     /// No table, no shape, or an edge that is not along a side of the specimen.
@@ -89,11 +89,7 @@ impl Lines {
         hold: TableHold,
     ) -> Result<Self> {
         let Some(table) = sequence.table else {
-            return Err(Error::geometry(
-                &sequence.name,
-                "no table",
-                "a [table] in test.toml: where its edge is",
-            ));
+            return Err(Error::geometry(&sequence.name, "no table", "a [table] in test.toml, with its edge"));
         };
         let outward = specimen.turn(&Vector3::from(table.outward)).normalize();
         let edge = specimen.place(&Vector3::from(table.edge_point_m));
@@ -102,7 +98,7 @@ impl Lines {
             (0..grid.columns).map(|c| (0..grid.rows).map(|r| grid.node(c, r)).collect()).collect();
         let rows: Vec<Vec<usize>> =
             (0..grid.rows).map(|r| (0..grid.columns).map(|c| grid.node(c, r)).collect()).collect();
-        // How far the sheet reaches outward along its two sides, over all frames.
+        // Reach of the sheet outward along its two sides, over all frames.
         let mut reach = [0.0; 2];
         for shape in shapes.iter().flatten() {
             for (reach, lines) in reach.iter_mut().zip([&columns, &rows]) {
@@ -119,7 +115,8 @@ impl Lines {
             return Err(Error::geometry(
                 &sequence.name,
                 "a sheet whose sides are not along the table's edge, or no shape at all",
-                "shapes (positions.npy) of a sheet pushed straight over the edge, and outward and edge_direction as they are",
+                "shapes (positions.npy) of a sheet pushed straight over the edge, and the true outward and \
+                 edge_direction",
             ));
         }
         let mut nodes = if along == 0 { columns } else { rows };
@@ -129,20 +126,20 @@ impl Lines {
         Ok(Self { nodes, edge, outward, hold })
     }
 
-    /// What one observed shape says; `None` where too little hangs over, or a line that matters was hardly seen. On the
-    /// table, where a line may well be hidden, the next one seen tells its place.
+    /// The overhang in one observed shape; `None` if too little hangs over, or a line that matters was hardly
+    /// observed. On the table, where a line may be hidden, the next observed one gives its position.
     pub(super) fn overhang(&self, specimen: &Specimen, shape: &[f64]) -> Option<Overhang> {
         let seen: Vec<Option<Line>> =
             self.nodes.iter().map(|line| Line::through(specimen, line, shape)).collect();
         let past = |line: &Line| (line.centre - self.edge).dot(&self.outward);
-        // The table ends before the first line past its edge; what hangs may swing back under it.
+        // The table ends before the first line past its edge; the hanging part may swing back under it.
         let on_table = seen.iter().position(|line| line.as_ref().is_some_and(|line| past(line) > 0.0))?;
         let held = on_table + self.hold.past_edge;
         if on_table == 0 || held < FEWEST_HELD || held + FEWEST_FREE > self.nodes.len() {
             return None;
         }
         let hanging: Vec<&Line> = seen[on_table - 1..].iter().map(Option::as_ref).collect::<Option<_>>()?;
-        // All lines are parallel: tilts of their own, which noise gives them, would strain a sheet that bends as a cylinder.
+        // All lines are parallel: individual tilts, due to noise, would strain a sheet that bends as a cylinder.
         let along = seen.iter().flatten().map(|line| line.slope).sum::<Vector3<f64>>().normalize();
         let mut start = vec![0.0; shape.len()];
         for (line, nodes) in self.nodes.iter().enumerate() {
@@ -162,8 +159,8 @@ impl Lines {
         Some(Overhang { held, length, left_out, start })
     }
 
-    /// The nodes of the first lines, all held; the last two lines as clips 0 and 1, since their places and the slope
-    /// between them are what the free cloth feels.
+    /// The nodes of the first lines, all held; the last two lines as clips 0 and 1, since the free cloth depends on
+    /// their positions and the slope between them.
     pub(super) fn held(&self, lines: usize) -> impl Iterator<Item = Held> + '_ {
         let clip = move |line: usize| (line + 2).checked_sub(lines);
         let nodes = self.nodes[..lines].iter().enumerate();
@@ -179,9 +176,10 @@ impl Lines {
 
     /// The lines that move as a whole, so that the sheet bends as a cylinder: all.
     ///
-    /// Hinges of a triangulated sheet tie bending to twist: split all one way, a sheet hung off a table twists (by 5 mm at
-    /// its tip where Γ = 10), and split in turn, every other node gives way, which makes it a fifth softer. A cylinder knows
-    /// neither: its flexural rigidity is 3 × the hinges' stiffness, as the curve files say.
+    /// Hinges of a triangulated sheet couple bending to twist. Split all one way, a sheet hanging off a table twists
+    /// (by 5 mm at its tip where Γ = 10); split alternately, every other node yields, which makes the sheet softer by
+    /// a fifth. A cylinder has neither effect: its flexural rigidity is 3 × the hinges' stiffness, as in the curve
+    /// files.
     pub(super) fn tied(&self) -> &[Vec<usize>] {
         if self.hold.cylinder { &self.nodes } else { &[] }
     }
@@ -201,14 +199,14 @@ impl Lines {
     }
 }
 
-/// A straight line through the places of its nodes: place = centre + slope × (rest place along the line).
+/// A straight line through the positions of its nodes: position = centre + slope × (rest position along the line).
 struct Line {
     centre: Vector3<f64>,
     slope: Vector3<f64>,
-    /// Middle of the seen nodes at rest, and the direction of the line there.
+    /// Centre of the observed nodes at rest, and the direction of the line there.
     rest: Vector3<f64>,
     along: Vector3<f64>,
-    /// Nodes seen too far off it.
+    /// Nodes observed too far off the line.
     left_out: usize,
 }
 
@@ -219,7 +217,7 @@ impl Line {
             .filter_map(|&node| Some((specimen.mesh.positions[node], point(shape, node)?)))
             .collect();
         let all = seen.len();
-        // Nodes seen far off the line were not seen there.
+        // Nodes observed far off the line are measurement errors.
         let mut line = Self::through_all(&seen)?;
         loop {
             let off =
@@ -253,13 +251,13 @@ impl Line {
         Some(Self { centre, slope: product / square, rest, along, left_out: 0 })
     }
 
-    /// Where a node of the line is if the line runs in a direction.
+    /// Position of a node of the line if the line has a given direction.
     fn at(&self, rest: Vector3<f64>, direction: &Vector3<f64>) -> Vector3<f64> {
         self.centre + direction * (rest - self.rest).dot(&self.along)
     }
 }
 
-/// A node's place, if it was seen.
+/// A node's position, if observed.
 fn point(shape: &[f64], node: usize) -> Option<Vector3<f64>> {
     let p = Vector3::from_column_slice(&shape[3 * node..3 * node + 3]);
     p.iter().all(|c| c.is_finite()).then_some(p)

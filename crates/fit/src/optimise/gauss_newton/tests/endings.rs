@@ -1,8 +1,8 @@
-//! Every way in which a fit ends, by either method, and what it says then.
+//! Every status of a fit, by either method, and its message.
 
 use super::*;
 
-/// A problem as a function of the point, and of whether the Jacobian is asked for.
+/// A problem given by a function of the point and of the request for a Jacobian.
 struct Given<F>(F);
 
 impl<F: FnMut(f64, bool) -> Result<Evaluation, &'static str>> Residuals for Given<F> {
@@ -22,7 +22,7 @@ fn fit(
     minimise(&mut Given(evaluate), &vector(&[start]), &Domain::everywhere(1), options, &mut |_| {})
 }
 
-/// A residual beside one that no parameter moves, so that the sum of squares is never below 1.
+/// A residual, beside a constant one that keeps the sum of squares at or above 1.
 fn values(residual: f64, slope: f64) -> Result<Evaluation, &'static str> {
     let jacobian = Some(matrix(&[[slope], [0.0]]));
     Ok(Evaluation::Values { residual: vector(&[residual, 1.0]), jacobian })
@@ -50,12 +50,12 @@ fn a_start_at_the_minimum_does_not_move() {
 
 #[test]
 fn a_minimum_is_found_to_the_noise_of_the_residual_and_no_closer() {
-    // Noise of 1e-5: a step to where the residual vanishes promises 1e-10 of the sum, and does not keep it.
+    // Noise of 1e-5: a step to the zero of the residual predicts a gain of 1e-10 of the sum and does not achieve it.
     let evaluate = |k: f64, _| values(2.0 - k + 1e-5 * (1e9 * k).sin(), 1.0);
     let outcome = fit(evaluate, 5.0, &Options::default()).unwrap();
     let said = outcome.status.to_string();
     assert!(matches!(outcome.status, Status::Noise { promised } if promised < 1e-9), "{said}");
-    assert!(said.starts_with("what is left to gain, a share of "), "{said}");
+    assert!(said.starts_with("the possible gain, a share of "), "{said}");
     assert!(outcome.status.converged() && (outcome.point[0] - 2.0).abs() < 1e-4, "{}", outcome.point);
 }
 
@@ -66,7 +66,7 @@ fn a_derivative_of_the_wrong_sign_leads_nowhere() {
         assert_eq!(outcome.status.to_string(), "no step, however short, lowered the residual");
         assert!(!outcome.status.converged() && outcome.point[0] == 5.0);
     }
-    // A line search that is to stop at gains below 1 % stops where no more is promised.
+    // A line search with a gain tolerance of 1 % stops when no more is predicted.
     let outcome = fit(|k, _| values(2.0 - k, -1.0), 1.9, &line_search(0.01)).unwrap();
     assert_eq!(outcome.status, Status::SmallGain { tolerance: 0.01 });
     assert_eq!(outcome.point[0], 1.9);
@@ -80,7 +80,7 @@ fn numbers_that_are_not_finite_are_no_values() {
         assert_eq!(outcome.status.to_string(), said);
         assert!(outcome.sum_of_squares.is_nan() && outcome.residual.is_empty());
     }
-    // Finite, but not so its square.
+    // Finite values with a non-finite square.
     for options in both() {
         let outcome = fit(|k, _| values(2.0 - k, 1e300), 1.0, &options).unwrap();
         let said = "the linearised step failed: the least-squares problem contains NaN or infinite numbers";
@@ -114,7 +114,7 @@ fn what_ends_the_problem_ends_the_fit() {
     }
 }
 
-/// A problem that never gives a Jacobian but at 5.
+/// A problem that gives no Jacobian except at 5.
 fn forgetful(k: f64, _: bool) -> Result<Evaluation, &'static str> {
     match values(2.0 - k, 1.0) {
         Ok(Evaluation::Values { residual, .. }) if k != 5.0 => {

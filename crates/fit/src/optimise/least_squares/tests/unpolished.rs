@@ -11,7 +11,7 @@ fn unpolished_solutions_agree_with_polished_ones() {
             LeastSquares::new(random(&mut generator, 2 * n, n), random_vector(&mut generator, 2 * n) * 10.0);
         problem.rows = random(&mut generator, 5, n);
         problem.bounds = DVector::from_fn(5, |_, _| -generator.random_range(0.0..1.0));
-        // One row is no bound at all, one is of zeros.
+        // One row has no bound, one is zero.
         problem.bounds[0] = f64::NEG_INFINITY;
         problem.rows.row_mut(1).fill(0.0);
         problem.lower.fill(-1.0);
@@ -49,7 +49,7 @@ fn what_has_no_solution_has_none_unpolished() {
 fn every_status_is_said_in_words() {
     let said = |status: Status| status.to_string();
     assert_eq!(said(Status::Optimal), "solved");
-    let inaccurate = "the conditions of optimality hold only to 2.0e-7, wanted 1e-10";
+    let inaccurate = "the optimality conditions hold only to 2.0e-7, not to 1e-10";
     assert_eq!(said(Status::Inaccurate { kkt: 2e-7 }), inaccurate);
     assert_eq!(said(Status::Infeasible), "the inequalities contradict one another");
     assert_eq!(said(Status::NotFinite), "the least-squares problem contains NaN or infinite numbers");
