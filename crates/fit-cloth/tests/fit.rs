@@ -54,8 +54,7 @@ fn fit_finds_every_curve_that_is_shown_and_says_which_is_not() {
         warnings.starts_with("warning: stvk: bend-warp is not observed: no sequence shows it"),
         "{warnings}"
     );
-    for words in
-        ["fitted to the shapes of bend-weft", "moment", "complex-shear (complex-shear) takes no part"]
+    for words in ["fitted to the shapes of bend-weft", "moment", "complex-shear (complex-shear) is not used"]
     {
         assert!(text.contains(words), "{words}: {text}");
     }
@@ -163,7 +162,7 @@ fn a_set_without_the_tests_that_a_command_is_about_is_refused() {
         let [text, errors] = said(&output);
         assert_eq!((output.status.code(), &text[..]), (Some(3), ""), "{command} {more:?}: {errors}");
         assert!(
-            errors.contains(words) && errors.contains("(fit-cloth fit takes what a set has)"),
+            errors.contains(words) && errors.contains("(fit-cloth fit uses all tests of a set)"),
             "{errors}"
         );
         assert!(!path.join("out").exists() && !path.join(".out.work").exists());

@@ -227,7 +227,7 @@ fn lines_above_the_header_are_passed_over_and_said() {
     fs::write(&path, format!("***\n*** made by a program\n{TABLE}")).unwrap();
     let output = import(folder.path(), &[]);
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(text(&output.stderr), "weft.csv: 2 lines above the header are passed over\n");
+    assert_eq!(text(&output.stderr), "weft.csv: skipped 2 lines above the header\n");
     assert!(text(&output.stdout).starts_with("stretch-weft: 7 rows, "));
     fs::write(&path, b"PK\x03\x04\x14\0\x06\0").unwrap();
     let output = import(folder.path(), &["--replace"]);
@@ -287,7 +287,7 @@ fn usage_errors_end_in_2() {
     check(&["import", "strip", "weft.csv"], "--set <SET>");
     check(&import(&["--strain", "strain"]), "cannot be used with");
     check(&import(&["--rows", "five"]), "such as 3-90 or 3-");
-    check(&["import", "strip", "weft.csv", "--force", ":N"], "a column's name is missing");
+    check(&["import", "strip", "weft.csv", "--force", ":N"], "the column name is missing");
     check(&import(&["--branches", "a"]), "--branches");
     assert_eq!(names(folder.path()), ["weft.csv"]);
 }

@@ -1,10 +1,10 @@
-//! The flags of the commands that read a curve.
+//! Flags of the commands that read a curve.
 
 use super::choice::{ComponentChoice, ModelChoice};
 use clap::Args;
 use cloth_sim::material::{Component, Model};
 
-/// How a table of one curve is read.
+/// Flags that say how a curve is read.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading")]
 pub struct Reading {
