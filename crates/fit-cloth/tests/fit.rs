@@ -51,7 +51,7 @@ fn fit_finds_every_curve_that_is_shown_and_says_which_is_not() {
     let [text, warnings] = said(&output);
     assert!(output.status.success(), "{warnings}");
     assert!(
-        warnings.starts_with("warning: stvk: bend-warp is not observed: no sequence shows it"),
+        warnings.starts_with("warning: stvk: bend-warp is not observed: no sequence observes it"),
         "{warnings}"
     );
     for words in ["fitted to the shapes of bend-weft", "moment", "complex-shear (complex-shear) is not used"]
@@ -94,9 +94,9 @@ fn the_material_file_gives_every_curve_back_exactly() {
         let read = MaterialFile::read(&path).unwrap();
         assert_eq!(read, file);
         assert_eq!(read.curves().unwrap(), *report.curves());
-        // What helped a stage along is in the file, and in what a person reads.
+        // A stage's interventions are in the file and in the text output.
         for stage in report.last_stages() {
-            let told = text::stage(stage, false).contains("helped along by: ");
+            let told = text::stage(stage, false).contains("interventions: ");
             assert_eq!(told, !stage.interventions.none(), "{}", text::stage(stage, false));
             assert_eq!(read.curves[&stage.components[0]].interventions, stage.interventions);
         }
@@ -226,7 +226,7 @@ fn compare_ranks_twelve_by_what_no_fit_saw() {
         let [text, errors] = said(&output);
         // Some may not converge; that is told, and the rest stands.
         assert!(matches!(output.status.code(), Some(0 | 4)), "{errors}");
-        assert!(text.contains("Ranked by the residual on the sequences left for validation"), "{text}");
+        assert!(text.contains("Ranked by the residual on the validation sequences"), "{text}");
     }
     let text = fs::read_to_string(path.join("out/compare.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();

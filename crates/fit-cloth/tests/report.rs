@@ -249,12 +249,12 @@ fn the_verdict_says_what_is_missing_given_and_unsure() {
     // The set has no test of diagonal bending.
     let all = words(&["fit", "set"]);
     says(&all, "state", "Converged: 5 of 6 curves fitted, without a curve: bend-diagonal.");
-    says(&all, "next", "What would tell most: a test that shows bend-diagonal, then more frames of");
-    says(&all, "good", "Measured forces are met within 0.");
+    says(&all, "next", "Most informative next: a test that observes bend-diagonal, then more frames of");
+    says(&all, "good", "Worst rms residuals: forces 0.");
     assert_eq!(all["sound"], false);
     let given = words(&["bend", "set", "--known", "out/material.json"]);
     says(&given, "state", "Converged: 2 of 6 curves fitted, 3 given, without a curve: bend-diagonal.");
-    says(&given, "good", "Measured shapes are met within");
+    says(&given, "good", "Worst rms residuals: shapes 0.");
     // Ring-2 springs do not tell a sheet off a table apart: the test is there, and is not asked for again.
     let springs = words(&["fit", "set", "--model", "springs"]);
     says(

@@ -173,7 +173,10 @@ fn motions_that_no_fit_saw_are_met_within_a_tenth() {
     let output = validate(&fixture("cotton-denim"), &out, &[]);
     let [words, errors] = said(&output);
     assert!(output.status.success(), "{errors}");
-    assert!(words.contains("aggregated torque") && words.contains("meet the aggregated torque"), "{words}");
+    assert!(
+        words.contains("aggregated torque") && words.contains("reproduce the aggregated torque"),
+        "{words}"
+    );
     // The second run replaces the first.
     let output = validate(&fixture("cotton-denim"), &out, &["--json", "--threads", "1"]);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -296,8 +299,7 @@ fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
         assert!(output.status.success(), "{}", said(&output)[1]);
         said(&output)[1].clone()
     };
-    let warning =
-        "warning: bending of springs belongs to the grid of its fit, 13x13; --nodes tries bend-warp on it\n";
+    let warning = "warning: bending curves of springs hold only on the grid of their fit, 13x13; simulate bend-warp on it with --nodes\n";
     // What `check` finds in so short a curve is warned of beside it.
     let [own_grid, grid_of_fit] = [validate(&[]), validate(&coarse[..2])];
     assert!(

@@ -120,8 +120,8 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
             let named = |text: &str| {
                 let line = text.lines().find(|line| line.contains(&format!("{component} is not observed")));
                 line.is_some_and(|line| {
-                    line.contains("no sequence shows it")
-                        || shown(component) && line.contains("do not tell its scale")
+                    line.contains("no sequence observes it")
+                        || shown(component) && line.contains("do not determine its scale")
                 })
             };
             let honest = match entry.observed {
