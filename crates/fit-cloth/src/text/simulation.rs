@@ -91,7 +91,7 @@ fn at_rest(descent: &Descent) -> String {
     let found = descent.equilibrium;
     let state = if found.converged() { "At rest, and stable" } else { "NOT converged" };
     let mut text = format!(
-        "{state}: {} after {} steps of descent; the largest imbalance of a node is {:.1e} N, at most {:.1e} N is allowed.",
+        "{state}: {} after {} steps of descent; the largest imbalance of a node is {:.1e} N (allowed: {:.1e} N).",
         found.status, descent.steps, found.imbalance, found.tolerance
     );
     if found.escaped {
