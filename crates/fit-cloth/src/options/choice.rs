@@ -166,7 +166,7 @@ pub enum TopicChoice {
     Fits,
     /// Curve error against noise
     Noise,
-    /// What each part saves and costs; parts of fits only with topic fits
+    /// Savings and costs of each part; parts of fits only with topic fits
     Ablation,
 }
 

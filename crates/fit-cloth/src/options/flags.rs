@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct SetFlags {
     /// Folder of the measurement set
     pub set: PathBuf,
-    /// Output folder; a previous result there is replaced [default: out/ and the set's name; compare and validate append
-    /// -compare and -validation]
+    /// Output folder; a previous result there is replaced [default: out/ and the set's name; compare and validate
+    /// append -compare and -validation]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Nodes of the simulation grid, columns x rows [default: as many cells as 25x25 nodes have, near square]

@@ -64,7 +64,7 @@ pub fn missing(report: &FitReport, component: Component) -> Option<String> {
     let failed = report.failures.iter().any(|failure| failure.components.contains(&component));
     Some(match report.stage(component) {
         None if failed => format!("{component} has no curve: its stage failed"),
-        None => format!("{component} is not observed: no sequence observes it; it has no curve"),
+        None => format!("{component} is not observed by any sequence; it has no curve"),
         Some(stage) => {
             let names = list(stage.sequences.iter().map(|sequence| &sequence.name));
             format!(

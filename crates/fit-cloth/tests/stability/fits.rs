@@ -120,7 +120,7 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
             let named = |text: &str| {
                 let line = text.lines().find(|line| line.contains(&format!("{component} is not observed")));
                 line.is_some_and(|line| {
-                    line.contains("no sequence observes it")
+                    line.contains("by any sequence")
                         || shown(component) && line.contains("do not determine its scale")
                 })
             };
