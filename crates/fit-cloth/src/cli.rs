@@ -1,4 +1,4 @@
-//! The command line: all commands with their arguments, each handed to the file that carries it out.
+//! The command line: every command with its arguments, dispatched to its module.
 
 use crate::command::check::{self, CheckOptions};
 use crate::command::compare::{self, CompareOptions};
@@ -32,7 +32,7 @@ pub struct Options {
 
 /// The commands.
 #[derive(Debug, Clone, Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "there is one of them in a run")]
+#[expect(clippy::large_enum_variant, reason = "one instance per run")]
 pub enum Command {
     /// Import a laboratory's table into a measurement set, or convert it into a curve
     Import(Import),
@@ -66,10 +66,10 @@ pub enum Command {
     Report(ReportOptions),
 }
 
-/// Carries out a command and writes its result to `output`.
+/// Runs a command and writes its result to `output`.
 ///
 /// # Errors
-/// What stopped it.
+/// The error that stopped the command.
 pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &options.command {
         Command::Import(import) => import::run(import, options.telling, output),

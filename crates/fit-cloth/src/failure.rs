@@ -1,13 +1,13 @@
-//! Why a command could not be carried out: its words and its exit code.
+//! Errors that stop a command: message and exit code.
 
 use cloth_data::error::Error;
 use std::error::Error as _;
 use std::io;
 
-/// What stopped a command. A fit that does not converge is no failure: see [`Outcome`](crate::outcome::Outcome).
+/// An error that stopped a command. A fit that does not converge is not one: see [`Outcome`](crate::outcome::Outcome).
 #[derive(Debug)]
 pub enum Failure {
-    /// A measurement, a setting or a file.
+    /// A bad measurement, setting or file, or an I/O error.
     Fit(Error),
     /// Standard output could not be written.
     Output(io::Error),
@@ -26,7 +26,7 @@ impl From<io::Error> for Failure {
 }
 
 impl Failure {
-    /// 1 where the operating system refused, 3 where the input is bad.
+    /// 1 for I/O errors, 3 for bad input.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Output(_) | Self::Fit(Error::Io { .. }) => 1,
@@ -34,7 +34,7 @@ impl Failure {
         }
     }
 
-    /// What happened and why: the chain of causes on one line.
+    /// The error and its chain of causes on one line.
     pub fn in_words(&self) -> String {
         let error = match self {
             Self::Output(error) => return format!("standard output: {error}"),
@@ -43,7 +43,7 @@ impl Failure {
         let mut words = error.to_string();
         let mut cause = error.source();
         while let Some(error) = cause {
-            // Some errors say their cause themselves.
+            // Some messages already include their cause.
             let more = error.to_string();
             if !words.contains(&more) {
                 words = format!("{words}: {more}");
@@ -54,7 +54,7 @@ impl Failure {
     }
 }
 
-/// Bad input with the option that mends it; other errors as they are.
+/// Appends the option that resolves it to a bad-input error; other errors are unchanged.
 pub(crate) fn with_option(error: Error, option: &str) -> Error {
     match error {
         Error::Input { path, line, field, found, expected } => {

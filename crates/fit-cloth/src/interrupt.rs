@@ -1,16 +1,16 @@
-//! Ctrl-C: the program ends with code 130, but first puts its files in order. A second one ends it at once.
+//! Handling of Ctrl-C: the program tidies up its files and exits with code 130. A second Ctrl-C exits at once.
 
-/// Installs what happens on Ctrl-C. Where there are no signals it just ends the program.
+/// Installs the Ctrl-C handler. On systems without signals, Ctrl-C just ends the program.
 ///
 /// # Errors
-/// The operating system refuses.
+/// The operating system refuses the handler.
 pub(crate) fn install() -> std::io::Result<()> {
     #[cfg(unix)]
     unix::install()?;
     Ok(())
 }
 
-/// Waits for the end, if Ctrl-C came before: then it must not be missed because the command was just as quick.
+/// Blocks until exit if Ctrl-C was pressed, so that a command finishing at the same moment does not hide the interrupt.
 pub(crate) fn settle() {
     #[cfg(unix)]
     unix::settle();
@@ -26,12 +26,12 @@ mod unix {
 
     const EXIT_CODE: i32 = 130;
 
-    /// Set by the signal itself, on whatever thread.
+    /// Set by the signal handler, on any thread.
     static INTERRUPTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
     pub(super) fn install() -> std::io::Result<()> {
         let interrupted = || Arc::clone(&INTERRUPTED);
-        // In this order: the first signal sets the flag, the second finds it set.
+        // Order matters: the first signal sets the flag, the second finds it set and exits.
         flag::register_conditional_shutdown(SIGINT, EXIT_CODE, interrupted())?;
         flag::register(SIGINT, interrupted())?;
         let mut signals = Signals::new([SIGINT])?;

@@ -1,23 +1,24 @@
-//! The command line of fit-cloth: from its arguments to an exit code.
+//! The command line of fit-cloth.
 //!
 //! | exit code | means |
 //! |---|---|
-//! | 0 | done, and converged where something was solved |
-//! | 1 | the operating system refused |
-//! | 2 | the command line makes no sense |
-//! | 3 | bad input: a file, a measurement or a setting; a curve that `check` finds a defect in |
-//! | 4 | not converged; what was reached is written, and marked so |
+//! | 0 | success; everything solved has converged |
+//! | 1 | I/O error |
+//! | 2 | invalid command line |
+//! | 3 | bad input: a file, a measurement or a setting; a curve in which `check` finds a defect |
+//! | 4 | not converged; the result is written and marked as such |
 //! | 130 | interrupted |
 //!
 //! | module | role |
 //! |---|---|
 //! | [`cli`] | all commands with their arguments |
 //! | [`command`] | the commands, one file each |
-//! | [`options`] | the flags that commands share |
-//! | [`subject`] | the curves that `check` and `curve` work on |
-//! | [`text`], [`plot`], [`page`] | what was found: in words, as figures, as a page |
-//! | [`telling`], [`output`], [`progress`] | standard output and standard error; files, whole or not at all; how far it is |
-//! | [`outcome`], [`failure`] | how a command has ended, or why it could not be carried out |
+//! | [`options`] | flags shared by several commands |
+//! | [`subject`] | the curves given to `check` and `curve` |
+//! | [`text`], [`plot`], [`page`] | results as text, figures and an HTML page |
+//! | [`telling`], [`output`], [`progress`] | standard output and standard error; atomic file output; the progress line
+//! |
+//! | [`outcome`], [`failure`] | the outcome of a completed command; the error that stopped one |
 
 pub mod cli;
 pub mod command;
@@ -41,10 +42,10 @@ use outcome::Outcome;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
-/// Runs the program on its arguments, its standard output and its standard error.
+/// Runs the program on the process's arguments, standard output and standard error.
 pub fn main() -> ExitCode {
     if let Err(error) = interrupt::install() {
-        let _ = writeln!(io::stderr(), "error: no handler for interrupts: {error}");
+        let _ = writeln!(io::stderr(), "error: cannot install the interrupt handler: {error}");
         return ExitCode::from(1);
     }
     let code = run();
@@ -56,7 +57,7 @@ fn run() -> ExitCode {
     let options = match Options::try_parse() {
         Ok(options) => options,
         Err(error) => {
-            // Help that nobody reads is no failure, and there is nowhere to tell of one on standard error.
+            // A closed pipe while printing help is not an error, and a failing standard error cannot be reported.
             let _ = error.print();
             return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }
@@ -74,7 +75,7 @@ fn run() -> ExitCode {
     }
 }
 
-/// Goes on where nobody reads: a reader that has read enough, such as `head`, changes neither result nor exit code.
+/// A writer that ignores broken pipes: a reader that stops early, such as `head`, changes neither result nor exit code.
 struct Patient<W>(W);
 
 impl<W: Write> Write for Patient<W> {

@@ -1,4 +1,4 @@
-//! The program `fit-cloth`.
+//! The `fit-cloth` program.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! The flags that commands share.
+//! Flags shared by several commands.
 
 mod choice;
 mod flags;

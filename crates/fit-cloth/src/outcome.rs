@@ -1,12 +1,12 @@
-//! How a command has ended.
+//! Outcomes of completed commands.
 
-/// How a command that could be carried out has ended.
+/// The outcome of a command that ran to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// As it should.
+    /// Success.
     Done,
-    /// The check was made, and what was checked has a defect.
+    /// A checked curve has a defect.
     Defective,
-    /// With a result that is written, but marked as not converged.
+    /// The result is written and marked as not converged.
     NotConverged,
 }

@@ -1,7 +1,7 @@
-//! What a command writes, kept whole when the program is interrupted.
+//! Output files and folders that stay consistent when the program is interrupted.
 //!
-//! Whoever writes holds one lock, and an interruption takes it first: so what is being written is finished before the
-//! program ends, or was never begun.
+//! Every writer holds one lock, and the interrupt handler takes it before it exits: a write in progress is finished,
+//! and no other is started.
 
 use crate::failure::with_option;
 use cloth_data::error::Error;
@@ -11,24 +11,24 @@ use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The folders that are being made.
+/// Output folders in progress.
 static MAKING: Mutex<Vec<OutputFolder>> = Mutex::new(Vec::new());
 
 fn making() -> MutexGuard<'static, Vec<OutputFolder>> {
-    // A writer that panicked has left a folder that can be put in order all the same.
+    // The folders can be tidied up even if a writer panicked.
     MAKING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Writes something that an interruption must not cut in two, and that is no [`Output`].
+/// Runs a write that must not be interrupted and is not an [`Output`].
 pub(crate) fn whole<T>(write: impl FnOnce() -> T) -> T {
     let _held = making();
     write()
 }
 
-/// Writes text to a file that is not the one it was made from.
+/// Writes text to a file, which must not be the input it was made from.
 ///
 /// # Errors
-/// The same file; what the operating system refuses.
+/// `out` is `input`; I/O errors.
 pub(crate) fn write(flag: &str, out: &Path, input: &Path, text: &str) -> Result<(), Error> {
     if let (Ok(out), Ok(same)) = (out.canonicalize(), input.canonicalize())
         && out == same
@@ -39,7 +39,7 @@ pub(crate) fn write(flag: &str, out: &Path, input: &Path, text: &str) -> Result<
     whole(|| write_file(out, text.as_bytes()))
 }
 
-/// The output folder of a command: its own from the start of the computation until the result is in place.
+/// The output folder of a command, claimed from the start of the computation until the result is in place.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -56,31 +56,31 @@ impl Output {
         Ok(Self { path: path.to_path_buf() })
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What a former run with the same key has finished; from now on records can be kept.
+    /// Reads the records of an earlier run with the same key; from then on [`Self::keep`] adds records.
     ///
     /// # Errors
-    /// What the operating system refuses.
+    /// I/O errors.
     pub fn recall<T: DeserializeOwned>(&self, key: &impl Serialize) -> Result<Recalled<T>, Error> {
         self.with(|folder| folder.recall(key))
     }
 
-    /// Keeps what is finished, should the program be stopped.
+    /// Records a finished part, so that a stopped run can resume after it.
     ///
     /// # Errors
-    /// What the operating system refuses.
+    /// I/O errors.
     pub fn keep(&self, record: &impl Serialize) -> Result<(), Error> {
         self.with(|folder| folder.keep(record))
     }
 
-    /// Builds the folder and puts it in the place of the old one.
+    /// Builds the folder and replaces the old one with it.
     ///
     /// # Errors
-    /// Those of `build`; what the operating system refuses.
+    /// Errors of `build`; I/O errors.
     pub fn replace(&self, build: impl FnOnce(&Path) -> Result<(), Error>) -> Result<(), Error> {
         self.with(|folder| folder.replace(build))
     }
@@ -88,7 +88,7 @@ impl Output {
     fn with<T>(&self, action: impl FnOnce(&mut OutputFolder) -> T) -> T {
         let mut making = making();
         let folder = making.iter_mut().find(|folder| folder.path() == self.path);
-        action(folder.expect("it is there until this is dropped"))
+        action(folder.expect("the folder is listed until this is dropped"))
     }
 }
 
@@ -98,8 +98,8 @@ impl Drop for Output {
     }
 }
 
-/// Waits until nothing is being written, puts every folder in order, says what is left, and lets nobody write again
-/// before the program has ended.
+/// Waits for the write in progress, tidies up every folder, prints what is left, and exits while holding the lock, so
+/// that nothing else is written.
 #[cfg(unix)]
 pub(crate) fn end(code: i32) -> ! {
     use std::io::Write;
@@ -108,20 +108,20 @@ pub(crate) fn end(code: i32) -> ! {
     making.clear();
     crate::progress::clear();
     let left = if left.is_empty() { String::new() } else { format!(": {}", left.join("; ")) };
-    // Nobody may be there to read it.
+    // Standard error may be closed.
     let _ = writeln!(std::io::stderr(), "interrupted{left}");
     std::process::exit(code)
 }
 
-/// What is left of a folder that is being made.
+/// Describes what is left of an output folder in progress.
 #[cfg(unix)]
 fn left(folder: &OutputFolder) -> String {
     let path = folder.path().display();
     match folder.kept() {
         _ if folder.is_in_place() => format!("the result is in {path}"),
-        0 => format!("{path} is as it was"),
+        0 => format!("{path} is unchanged"),
         kept => format!(
-            "{path} is as it was; the same command goes on after {kept} finished {}, kept in {}",
+            "{path} is unchanged; the same command resumes after {kept} finished {}, kept in {}",
             if kept == 1 { "part" } else { "parts" },
             folder.work().display()
         ),

@@ -1,6 +1,6 @@
-//! The page of a fit or a comparison: one file that opens without a network, `report.html`.
+//! The page of a fit or a comparison, `report.html`: a single file that needs no network.
 //!
-//! `report.json` is what it shows, as data; a template puts that, the style and the script together.
+//! Its data is `report.json`; a template combines data, style and script.
 
 mod curves;
 mod fit;
@@ -31,65 +31,65 @@ const CHART_LIBRARY: &str = include_str!("page/vendor/uPlot.iife.min.js");
 const CHART_LICENCE: &str = include_str!("page/vendor/uPlot.LICENSE");
 const CHART_STYLE: &str = include_str!("page/vendor/uPlot.min.css");
 
-/// The version of `report.json`.
+/// Schema version of `report.json`.
 const SCHEMA: &str = "fit-cloth/report/1";
 
-/// The page's file, and that of its data.
+/// File names of the page and its data.
 const PAGE: &str = "report.html";
 const DATA: &str = "report.json";
 
-/// What a page shows.
+/// Content of a page.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Page {
     schema: String,
     program: String,
     fabric: String,
-    /// One model each, or one model in one variant each.
+    /// One fit per model, or per model and variant.
     fits: Vec<Fit>,
-    /// Which of them is best, if they were compared.
+    /// Ranking of the fits, if they were compared.
     ranking: Option<Ranking>,
 }
 
 impl Page {
-    /// A page of some fits of a fabric.
+    /// A page for fits of one fabric.
     pub fn new(fabric: &str, fits: Vec<Fit>, ranking: Option<Ranking>) -> Self {
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         Self { schema: SCHEMA.into(), program, fabric: fabric.into(), fits, ranking }
     }
 
-    /// Reads the data of a result folder.
+    /// Reads the data in a result folder.
     ///
     /// # Errors
-    /// No such file, or another one: with line and key.
+    /// A missing or invalid file, with line and key.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join(DATA);
         if !path.is_file() {
-            let found = if folder.is_file() { "a file in the place of its folder" } else { "nothing" };
-            let expected = "a result folder of fit, stretch, shear, bend or compare, without --no-report; models that were fitted together have theirs in the folder above";
+            let found = if folder.is_file() { "a file instead of a folder" } else { "nothing" };
+            let expected = "a result folder of fit, stretch, shear, bend or compare, without --no-report; for --model all, the folder above the models' folders";
             return Err(Error::input(folder, None, DATA, found, expected));
         }
         let page: Self = read_json(&path, SCHEMA)?;
         if page.fits.is_empty() {
-            return Err(Error::input(&path, None, "fits", "none", "one at least"));
+            return Err(Error::input(&path, None, "fits", "none", "at least one"));
         }
         Ok(page)
     }
 
-    /// Writes data and page into a folder that exists.
+    /// Writes data and page into an existing folder.
     ///
     /// # Errors
-    /// What the operating system refuses.
+    /// I/O errors.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let data = self.data();
         write_file(&folder.join(DATA), data.as_bytes())?;
         self.write_html(folder, &data)
     }
 
-    /// Writes the page alone, and says where.
+    /// Rewrites the page only and returns its path.
     ///
     /// # Errors
-    /// Something else than a file in its place; what the operating system refuses.
+    /// A link at the page's path; I/O errors.
     pub fn write_again(&self, folder: &Path) -> Result<PathBuf> {
         let page = folder.join(PAGE);
         refuse_link(&page)?;
@@ -97,9 +97,9 @@ impl Page {
         Ok(page)
     }
 
-    /// The text of `report.json`.
+    /// Text of `report.json`.
     fn data(&self) -> String {
-        // Strings and finite numbers: nothing here can fail to be JSON.
+        // Strings and finite numbers always serialise.
         serde_json::to_string(self).unwrap_or_default()
     }
 
@@ -113,7 +113,7 @@ impl Page {
                 fits => &self.fits,
                 chart_style => CHART_STYLE,
                 style => STYLE,
-                // Nothing in the data may end the script that holds it.
+                // No tag in the data may close the script element around it.
                 data => data.replace('<', "\\u003c"),
                 chart_licence => CHART_LICENCE,
                 chart_library => CHART_LIBRARY,

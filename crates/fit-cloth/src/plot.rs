@@ -1,4 +1,4 @@
-//! Figures of a fit, a validation, a study or a simulation, as SVG: `plots/*.svg`.
+//! Figures of a fit, a validation, a study or a simulation: `plots/*.svg`.
 
 mod chart;
 mod convergence;
@@ -36,10 +36,10 @@ use cloth_study::study::Study;
 use drawing::Drawn;
 use std::path::{Path, PathBuf};
 
-/// Writes a fit's figures into a result folder: every observed curve, every test, and how the fit went.
+/// Writes a fit's figures into a result folder: observed curves, tests, residuals, correlations and convergence.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// I/O errors.
 pub fn write_plots(folder: &Path, set: &MeasurementSet, report: &FitReport) -> Result<()> {
     let plots = Plots::new(folder)?;
     for stage in report.last_stages().filter(|stage| stage.curve.observed) {
@@ -53,10 +53,10 @@ pub fn write_plots(folder: &Path, set: &MeasurementSet, report: &FitReport) -> R
     plots.write_tests(set, report.model, &sequences)
 }
 
-/// Writes a validation's figures into its folder: every test, and measures of the whole.
+/// Writes a validation's figures into its folder: the tests and their measures.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// I/O errors.
 pub fn write_validation_plots(
     folder: &Path,
     set: &MeasurementSet,
@@ -80,21 +80,21 @@ pub fn write_validation_plots(
 /// Writes a study's figures into its folder.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// I/O errors.
 pub fn write_study_plots(folder: &Path, study: &Study) -> Result<()> {
     let plots = Plots::new(folder)?;
     study::figures(study).into_iter().try_for_each(|(name, figure)| plots.write(&name, figure))
 }
 
-/// Writes the picture of a simulation's shapes into its folder.
+/// Writes the figure of a simulation's shapes into its folder.
 ///
 /// # Errors
-/// What the operating system refuses.
+/// I/O errors.
 pub fn write_simulation_plots(folder: &Path, scene: &Scene, simulation: &Simulation) -> Result<()> {
     Plots::new(folder)?.write("shapes", shape::draw(scene, simulation))
 }
 
-/// The folder that figures are written into.
+/// The folder for figures.
 struct Plots(PathBuf);
 
 impl Plots {
@@ -104,7 +104,7 @@ impl Plots {
         Ok(Self(plots))
     }
 
-    /// Drawing into memory cannot fail but for a figure that would be empty or without extent; then there is none.
+    /// Drawing into memory fails only for an empty figure or one without extent; such a figure is omitted.
     fn write(&self, name: &str, figure: Drawn<String>) -> Result<()> {
         match figure {
             Ok(figure) => write_file(&self.0.join(format!("{name}.svg")), figure.as_bytes()),
@@ -112,7 +112,7 @@ impl Plots {
         }
     }
 
-    /// Of every kind of test the forces, of every sequence its shapes.
+    /// Writes the forces of every kind of test and the shapes of every sequence.
     fn write_tests(&self, set: &MeasurementSet, model: Model, sequences: &[&SequenceReport]) -> Result<()> {
         let mut kinds: Vec<_> = sequences.iter().map(|sequence| sequence.kind).collect();
         kinds.sort();

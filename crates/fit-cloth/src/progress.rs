@@ -1,4 +1,4 @@
-//! The progress line on standard error; nothing where that is not a terminal.
+//! The progress line on standard error, shown only on a terminal.
 
 use cloth_fit::equilibria::Meter;
 use cloth_fit::stage::{Event, Watch};
@@ -6,10 +6,10 @@ use indicatif::{ProgressBar, ProgressStyle, WeakProgressBar};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// The line that is shown.
+/// The line on screen.
 static SHOWN: Mutex<Option<WeakProgressBar>> = Mutex::new(None);
 
-/// Removes the line that is shown, if there is one.
+/// Removes the line on screen, if any.
 #[cfg(unix)]
 pub(crate) fn clear() {
     let shown = SHOWN.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -18,13 +18,13 @@ pub(crate) fn clear() {
     }
 }
 
-/// Lets a line turn by itself.
+/// Shows a line and starts its spinner.
 fn show(bar: &ProgressBar) {
     bar.enable_steady_tick(Duration::from_millis(100));
     *SHOWN.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.downgrade());
 }
 
-/// A line that counts steps.
+/// A progress line that counts steps.
 pub struct StepBar {
     bar: ProgressBar,
 }
@@ -40,7 +40,7 @@ impl StepBar {
         Self { bar }
     }
 
-    /// Says which step was made, and of how many if that is known.
+    /// Shows the number of the last step, and the total if known.
     pub fn at(&self, step: usize, steps: Option<usize>) {
         self.bar.set_message(match steps {
             Some(steps) => format!("step {step} of {steps}"),
@@ -54,7 +54,7 @@ impl StepBar {
     }
 }
 
-/// A line that turns while something runs.
+/// A progress line for a fit, a validation, a study or a rig run.
 pub struct Progress {
     bar: ProgressBar,
     meter: Arc<Meter>,
@@ -77,7 +77,7 @@ impl Progress {
         Self { bar, meter }
     }
 
-    /// What a fit tells its progress to.
+    /// The watch that a fit reports its progress to.
     pub fn watch(&self) -> Watch<'_> {
         let mut level = String::new();
         let mut tried = 0;

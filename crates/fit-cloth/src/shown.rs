@@ -1,4 +1,4 @@
-//! What page and figures both show of a curve and of a sequence, beside its shapes.
+//! Data of curves and sequences shared by the page and the figures.
 
 mod clip_force;
 mod curve_axes;

@@ -1,4 +1,4 @@
-//! What `check` and `curve` work on: the curves of a `material.json`, or a table of one curve.
+//! The curves that `check` and `curve` work on: those of a `material.json`, or a table of one curve.
 
 use cloth_data::curve_file::{CurveFile, columns};
 use cloth_data::error::{Error, Result};
@@ -9,48 +9,48 @@ use cloth_sim::curve::soundness::{Context, Finding, check};
 use cloth_sim::material::{Component, Compression, Model};
 use std::path::Path;
 
-/// Where curves came from, and go back to.
+/// The file that curves were read from, to be written back in the same format.
 #[derive(Debug, Clone)]
 pub enum Source {
-    /// All curves of a fit.
+    /// A material file with all curves of a fit.
     Material(Box<MaterialFile>),
-    /// One curve.
+    /// A table of one curve.
     Table(CurveFile),
 }
 
-/// A curve of a file.
+/// A curve of a file, with the units of that file.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// Its component; of a table, where that matters.
+    /// Component of the curve; of a table it matters only for rows below zero.
     pub component: Component,
-    /// What to call it.
+    /// Name in messages: the component, or the file name of a table.
     pub name: String,
     /// The curve.
     pub curve: StiffnessCurve,
-    /// What it is checked against.
+    /// Plausible stiffnesses and visited range that it is checked against.
     pub context: Context,
-    /// The model's strain over the file's: 3 for a table over curvature, else 1.
+    /// Strain of the model per unit of the file's strain: 3 for a table over curvature, else 1.
     pub strain_per_unit: f64,
-    /// What the file calls the strain, with its unit.
+    /// Name and unit of the file's strain.
     pub axis: &'static str,
-    /// The unit of its stresses.
+    /// Unit of the stresses.
     pub unit: &'static str,
 }
 
 impl Subject {
-    /// All that is to be said of it.
+    /// All findings of the check.
     pub fn findings(&self) -> Vec<Finding> {
         check(&self.curve, &self.context)
     }
 }
 
-/// Reads a `material.json`, known by its ending, or a table.
+/// Reads a `material.json`, recognised by its extension, or a table.
 ///
-/// * `component` — the one that is wanted of a material, or that a table is of
-/// * `model` — whose strains a table is over; `None` for what its columns say
+/// * `component` — selects a curve of a material; component of a table
+/// * `model` — model whose strain measure a table uses; `None` to infer it from the columns
 ///
 /// # Errors
-/// A bad file; a component that it does not have; a table with rows below zero without a component.
+/// A bad file; a component that the file lacks; a table with rows below zero and no component.
 pub fn read(
     path: &Path,
     component: Option<Component>,

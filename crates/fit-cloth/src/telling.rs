@@ -1,4 +1,4 @@
-//! How results, warnings and remarks are told.
+//! Printing of results, warnings and notes.
 
 use crate::failure::Failure;
 use clap::Args;
@@ -24,12 +24,12 @@ pub struct Telling {
     pub verbose: bool,
 }
 
-/// Says on standard error what the user should know, though the command goes on.
+/// Prints a warning on standard error.
 pub(crate) fn warn(telling: Telling, warning: &str) {
     note(telling, &format!("warning: {warning}"));
 }
 
-/// Warns of what `check` finds wrong with curves that are made or used.
+/// Warns of the defects that a check found in curves written or used.
 pub(crate) fn warn_of_defects(telling: Telling, what: &str, findings: &[(Component, Vec<Finding>)]) {
     for (component, findings) in findings {
         for finding in findings.iter().filter(|finding| finding.is_defect()) {
@@ -38,27 +38,25 @@ pub(crate) fn warn_of_defects(telling: Telling, what: &str, findings: &[(Compone
     }
 }
 
-/// Says on standard error that lines above a table's header were passed over.
+/// Notes on standard error how many lines above a table's header were skipped.
 pub(crate) fn note_lines_above(telling: Telling, path: &Path, columns: &[&str]) -> Result<(), Failure> {
     match lines_above_header(path, columns)? {
         0 => {}
-        1 => note(telling, &format!("{}: a line above the header is passed over", path.display())),
-        lines => {
-            note(telling, &format!("{}: {lines} lines above the header are passed over", path.display()))
-        }
+        1 => note(telling, &format!("{}: skipped 1 line above the header", path.display())),
+        lines => note(telling, &format!("{}: skipped {lines} lines above the header", path.display())),
     }
     Ok(())
 }
 
-/// Says something on standard error.
+/// Prints a note on standard error, unless --quiet is given.
 pub(crate) fn note(telling: Telling, text: &str) {
     if !telling.quiet {
-        // Nobody may be there to read it.
+        // Standard error may be closed.
         let _ = writeln!(std::io::stderr(), "{text}");
     }
 }
 
-/// Writes a result for a reader or, if asked for, as one JSON object.
+/// Writes a result as text or, with --json, as one JSON object.
 pub(crate) fn tell(
     telling: Telling,
     output: &mut impl Write,

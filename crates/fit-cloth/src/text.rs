@@ -1,4 +1,4 @@
-//! What a person reads: tables, and a verdict in words.
+//! Text output: tables, and verdicts as sentences.
 
 mod band;
 mod check;

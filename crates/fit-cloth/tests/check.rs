@@ -1,6 +1,6 @@
-//! `fit-cloth check` and `fit-cloth curve` from outside: what they print, write and return.
+//! `fit-cloth check` and `fit-cloth curve`: output, files and exit codes.
 //!
-//! Goal: a defect is found, told with its interval, and mended; an input is never changed; edits are what the source made.
+//! Goal: a defect is found, reported with its interval, and repaired; inputs are never changed; edits match the source.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may stop where they cannot go on")]
 
@@ -65,12 +65,12 @@ fn a_kink_is_found_and_mended_and_the_mended_curve_stays() {
     assert!(text.ends_with("Written to mended.csv\n"), "{text}");
     let (code, text, _) = run(at, &["check", "mended.csv", "--repair", "again.csv"]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("stays as it is") && text.contains("mended.csv: sound"), "{text}");
+    assert!(text.contains("sound, unchanged") && text.contains("mended.csv: sound"), "{text}");
     let read = |name: &str| fs::read_to_string(at.join(name)).unwrap();
     assert_eq!(read("mended.csv"), read("again.csv"));
     assert!(read("mended.csv").starts_with("strain,stiffness_n_per_m,stress_n_per_m\n0,"));
     assert_eq!(fs::read(&kinked).unwrap(), before);
-    // The sound rows far from the kink move by little.
+    // Sound rows far from the kink hardly change.
     let [mended, weft] =
         [at.join("mended.csv"), fixture("weft.csv").into()].map(|path| CurveFile::read(&path).unwrap());
     assert!((mended.stresses[24] / weft.stresses[24] - 1.0).abs() < 0.01);
@@ -116,7 +116,7 @@ fn every_curve_of_a_material_is_checked_and_mended_in_its_file() {
     assert!(mended.curves[&Component::StretchWeft] == given.curves[&Component::StretchWeft]);
     assert!(matches!(&mended.provenance.changes[..], [change] if change.starts_with("shear: repaired")));
     assert_eq!(run(at, &["check", "mended.json"]).0, Some(0));
-    // A fit does not build on what is not stable.
+    // A fit refuses unstable known curves.
     let set = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/cotton-denim");
     let fit = ["bend", &set.display().to_string(), "--known", "material.json"];
     let (code, _, error) = run(at, &fit);
@@ -157,7 +157,7 @@ fn the_edits_of_the_source_are_one_or_two_commands() {
         let (strain, stress) = end(&at.join("wide.csv"));
         assert!((strain - last).abs() < 1e-12 && (stress - before.1).abs() < 1e-9);
     }
-    // Figure 9: up to half the range as it was, then straight.
+    // Figure 9: unchanged up to half the range, then straight.
     edit(&[
         "extend",
         &weft,

@@ -1,5 +1,5 @@
-//! The programs `fit-cloth shear`, `bend`, `fit` and `compare`, run as a user runs them, on a set of every kind of test
-//! whose curves are known in closed form.
+//! `fit-cloth shear`, `bend`, `fit` and `compare`, run as a user does, on a set with every kind of test and closed-form
+//! curves.
 
 #![allow(clippy::unwrap_used)]
 
@@ -50,12 +50,8 @@ fn fit_finds_every_curve_that_is_shown_and_says_which_is_not() {
     let output = fit("fit", &path, "out", &["--variant", "linear"]);
     let [text, warnings] = said(&output);
     assert!(output.status.success(), "{warnings}");
-    assert!(
-        warnings.starts_with("warning: stvk: bend-warp is not observed: no sequence shows it"),
-        "{warnings}"
-    );
-    for words in
-        ["fitted to the shapes of bend-weft", "moment", "complex-shear (complex-shear) takes no part"]
+    assert!(warnings.starts_with("warning: stvk: bend-warp is not observed by any sequence"), "{warnings}");
+    for words in ["fitted to the shapes of bend-weft", "moment", "complex-shear (complex-shear) is not used"]
     {
         assert!(text.contains(words), "{words}: {text}");
     }
@@ -95,9 +91,9 @@ fn the_material_file_gives_every_curve_back_exactly() {
         let read = MaterialFile::read(&path).unwrap();
         assert_eq!(read, file);
         assert_eq!(read.curves().unwrap(), *report.curves());
-        // What helped a stage along is in the file, and in what a person reads.
+        // A stage's interventions are in the file and in the text output.
         for stage in report.last_stages() {
-            let told = text::stage(stage, false).contains("helped along by: ");
+            let told = text::stage(stage, false).contains("interventions: ");
             assert_eq!(told, !stage.interventions.none(), "{}", text::stage(stage, false));
             assert_eq!(read.curves[&stage.components[0]].interventions, stage.interventions);
         }
@@ -140,7 +136,7 @@ fn what_is_given_is_not_fitted() {
         assert_eq!(output.status.code(), Some(3), "{errors}");
         assert!(errors.contains(words), "{errors}");
     }
-    // Of another fabric they may be nothing like.
+    // Curves of another fabric may be entirely different.
     let other = fs::read_to_string(path.join(known)).unwrap();
     let name = format!("\"name\": \"{}\"", material.fabric.name);
     assert!(other.contains(&name));
@@ -163,7 +159,7 @@ fn a_set_without_the_tests_that_a_command_is_about_is_refused() {
         let [text, errors] = said(&output);
         assert_eq!((output.status.code(), &text[..]), (Some(3), ""), "{command} {more:?}: {errors}");
         assert!(
-            errors.contains(words) && errors.contains("(fit-cloth fit takes what a set has)"),
+            errors.contains(words) && errors.contains("(fit-cloth fit uses all tests of a set)"),
             "{errors}"
         );
         assert!(!path.join("out").exists() && !path.join(".out.work").exists());
@@ -175,7 +171,7 @@ fn a_set_without_the_tests_that_a_command_is_about_is_refused() {
                      stretch-bias or shear";
         refused("shear", more, words);
     }
-    // One of the bending tests is enough; without any there is nothing to bend.
+    // One bending test is enough; without any, the command is refused.
     fs::remove_dir_all(path.join("set/bend-warp")).unwrap();
     assert!(fit("bend", &path, "bent", &["--variant", "linear"]).status.success());
     fs::remove_dir_all(path.join("set/bend-weft")).unwrap();
@@ -207,7 +203,7 @@ fn weft_and_warp_share_the_curves_of_an_isotropic_cloth() {
 #[test]
 fn a_model_that_fails_costs_only_its_own_result() {
     let (_keep, path) = folder();
-    // Cells so long that a diagonal would count as a yarn.
+    // Cells so elongated that a diagonal would count as a yarn.
     let output =
         run(&["stretch", "set", "--nodes", "65x3", "--model", "all", "--out", "out", "--json"], &path);
     let [text, warnings] = said(&output);
@@ -225,15 +221,15 @@ fn compare_ranks_twelve_by_what_no_fit_saw() {
     for more in [&["--points", "1"][..], &["--points", "2"]] {
         let output = fit("compare", &path, "out", more);
         let [text, errors] = said(&output);
-        // Some may not converge; that is told, and the rest stands.
+        // Some may not converge; this is reported, and the others are valid.
         assert!(matches!(output.status.code(), Some(0 | 4)), "{errors}");
-        assert!(text.contains("Ranked by the residual on the sequences left for validation"), "{text}");
+        assert!(text.contains("Ranked by the residual on the validation sequences"), "{text}");
     }
     let text = fs::read_to_string(path.join("out/compare.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     let rows = json["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 12);
-    // The picture frame is uniform shear, which springs take otherwise than the law the set was made with.
+    // The picture frame is uniform shear, in which springs cannot follow the law of the set.
     assert_ne!(rows[0]["model"], "springs");
     assert_eq!(rows[11]["model"], "springs");
     assert!(rows[0]["validation"]["relative"].as_f64().unwrap() < 1e-3, "{text}");
@@ -263,7 +259,7 @@ fn a_sequence_that_others_replace_can_be_left_out() {
     };
     assert!(left("stretch-weft")["distance"]["relative"].as_f64().unwrap() < 1e-6, "{linear}");
     assert_eq!(left("stretch-warp")["lost"], serde_json::json!(["stretch-warp"]));
-    // Not every variant could spare the same sequences.
+    // Not every variant can leave out the same sequences.
     assert_eq!(json["ranked_by"], "fit");
 }
 
@@ -279,7 +275,7 @@ fn shapes_that_rise_against_gravity_are_exit_3_and_name_the_field() {
     assert!(text.contains("fitted to the shapes of bend-weft"), "{text}");
     assert!(warnings.contains("warning: sequence bend-warp, test.toml gravity_m_s2"), "{warnings}");
     fs::remove_dir_all(path.join("set/bend-weft")).unwrap();
-    // Though stretch and shear could be fitted: they are not what was asked for.
+    // Refused although stretch and shear could be fitted: they were not requested.
     for more in [&["--known", "both/material.json"][..], &[]] {
         let output = fit("bend", &path, "none", more);
         let [_, errors] = said(&output);

@@ -1,4 +1,4 @@
-//! Every example that a help shows runs, as it stands, on the fixtures.
+//! Every example in a help text runs unchanged on the fixtures.
 
 #![allow(clippy::unwrap_used)]
 
@@ -16,7 +16,7 @@ fn examples_run(command: &str) {
         run(&[&command.split(' ').collect::<Vec<_>>()[..], &["--help"]].concat(), folder.path()).stdout,
     )
     .unwrap();
-    // An example may go on behind a backslash.
+    // An example may continue after a backslash.
     let joined = help.replace("\\\n", " ");
     let examples: Vec<&str> = joined.lines().filter_map(|line| line.strip_prefix("  fit-cloth ")).collect();
     assert!(!examples.is_empty() && help.contains("Example"), "{help}");
@@ -24,7 +24,7 @@ fn examples_run(command: &str) {
         let example = example.replace("fixtures/", &format!("{}/", fixtures.display()));
         let output = run(&example.split_whitespace().collect::<Vec<_>>(), folder.path());
         let said = String::from_utf8_lossy(&output.stderr);
-        // A contestant may not converge, and a curve with a kink is checked for it; that is told.
+        // A contestant may not converge, and `check` finds the kink in the example's curve: other exit codes.
         let told = match command {
             "compare" => Some(4),
             "check" if example.contains("kinked") => Some(3),

@@ -1,6 +1,6 @@
-//! `fit-cloth import strip` from outside: what it prints, writes and returns.
+//! `fit-cloth import strip`: output, files and exit codes.
 //!
-//! Goal: a small table becomes a set that reads back; bad input ends in exit code 3, one message and no file.
+//! Goal: a small table becomes a set that reads back; bad input gives exit code 3, one message and no file.
 //! Specimen: a strip of 0.08 m × 0.04 m, pulled to 10 % and 20 % and back, 50 N/m.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may stop where they cannot go on")]
@@ -45,7 +45,7 @@ fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Imports `weft.csv` with the options of a new set, and more.
+/// Imports `weft.csv` with the options for a new set and additional ones.
 fn import(folder: &Path, more: &[&str]) -> Output {
     command(folder, &[&["import", "strip", "weft.csv"], &OPTIONS[..], more].concat()).output().unwrap()
 }
@@ -70,7 +70,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Exit code 0 and nothing on standard error; gives standard output.
+/// Asserts exit code 0 and an empty standard error; returns standard output.
 fn told(output: &Output) -> &str {
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
     text(&output.stdout)
@@ -106,7 +106,7 @@ fn a_table_becomes_a_sequence_of_a_set() {
     assert_eq!(names(folder.path()), ["knit", "weft.csv"]);
 }
 
-/// A strip of 50 N/m that lies free at 78 mm, the load cell's zero off by `zero`.
+/// A strip of 50 N/m, free at 78 mm, with the load cell offset by `zero`.
 fn tight(zero: f64) -> String {
     let rows = (0..60).map(|row| {
         let separation = 0.08 + 2e-4 * f64::from(row);
@@ -135,9 +135,9 @@ fn a_strip_that_is_not_free_is_told_of_and_each_option_mends_it() {
         let line = "rows 1 to 60, branch 0; free length 78.00 mm, first force 0.1000 N\n";
         assert!(told(&output).contains(line), "{}", told(&output));
     }
-    // A force of 0.1 N at rest less 0.1 N, and a machine that lengthens by 5 mm/N.
+    // A force of 0.1 N at rest, corrected by --zero, and a machine compliance of 5 mm/N.
     let output = import_of(&tight(0.0), &["--zero", "0.1", "--compliance-m-per-n", "0.005"]);
-    // 0.0118 m less 0.00295 m, of 0.08 m: 0.1106.
+    // (0.0118 m − 0.00295 m)/0.08 m = 0.1106.
     let said = told(&output);
     assert!(said.starts_with("stretch-weft: 60 rows, strain 0.0000 to 0.1106"), "{said}");
     assert!(said.contains(", force 0.0000 to 0.5900 N\n"), "{said}");
@@ -163,7 +163,7 @@ fn a_bias_strip_has_its_yarns_at_45_degrees() {
     let set = read_set(&folder.path().join("knit")).unwrap();
     let [sequence] = &set.sequences[..] else { panic!("one sequence") };
     assert_eq!((sequence.name.as_str(), sequence.kind), ("stretch-bias", Kind::StretchBias));
-    // Vertex 0 is in the fixed clamp, vertex 2 in the moving one: along the pull, between weft and warp.
+    // Vertex 0 is in the fixed clamp, vertex 2 in the moving one: the pull is midway between weft and warp.
     let along = sequence.mesh.material[2] - sequence.mesh.material[0];
     let part = 0.08 * 0.5f64.sqrt();
     assert!((along.x - part).abs() < 1e-12 && (along.y - part).abs() < 1e-12, "{along}");
@@ -227,7 +227,7 @@ fn lines_above_the_header_are_passed_over_and_said() {
     fs::write(&path, format!("***\n*** made by a program\n{TABLE}")).unwrap();
     let output = import(folder.path(), &[]);
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(text(&output.stderr), "weft.csv: 2 lines above the header are passed over\n");
+    assert_eq!(text(&output.stderr), "weft.csv: skipped 2 lines above the header\n");
     assert!(text(&output.stdout).starts_with("stretch-weft: 7 rows, "));
     fs::write(&path, b"PK\x03\x04\x14\0\x06\0").unwrap();
     let output = import(folder.path(), &["--replace"]);
@@ -264,7 +264,7 @@ fn what_is_there_is_not_overwritten() {
         &with("weft.csv", "knit/stretch-weft", &[]),
         "knit/stretch-weft folder: found other files, expected a new folder, an empty one, or one with fabric.toml to replace (--set)",
     );
-    // The set's own table of frames, of all tables, lies in the folder to be replaced.
+    // The set's own frames.csv as the table: it lies in the folder to be replaced.
     fs::copy(folder.path().join("weft.csv"), folder.path().join("knit/stretch-weft/frames.csv")).unwrap();
     let frames = with("knit/stretch-weft/frames.csv", "knit", &["--replace"]);
     let output = command(folder.path(), &frames).output().unwrap();
@@ -287,7 +287,7 @@ fn usage_errors_end_in_2() {
     check(&["import", "strip", "weft.csv"], "--set <SET>");
     check(&import(&["--strain", "strain"]), "cannot be used with");
     check(&import(&["--rows", "five"]), "such as 3-90 or 3-");
-    check(&["import", "strip", "weft.csv", "--force", ":N"], "a column's name is missing");
+    check(&["import", "strip", "weft.csv", "--force", ":N"], "the column name is missing");
     check(&import(&["--branches", "a"]), "--branches");
     assert_eq!(names(folder.path()), ["weft.csv"]);
 }

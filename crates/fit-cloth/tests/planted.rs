@@ -1,7 +1,7 @@
-//! What somebody plants beside an output, or where it goes, is named and left alone.
+//! Foreign files planted beside an output, or in its place, are reported and left alone.
 //!
-//! Goal: no link in a work folder is followed, no pipe waited for, nothing removed that is not a run's own; exit code 1 or
-//! 3, and the victims as they were. Specimen: every command that writes, on a small set.
+//! Goal: no link in a work folder is followed, no pipe is waited for, and only the run's own files are removed; exit
+//! code 1 or 3, victims unchanged. Specimen: every command that writes, on a small set.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
@@ -18,7 +18,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A run that waits for a pipe would wait for ever.
+/// Timeout: a run that waits for a pipe would never end.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The commands that write a folder `out`.
@@ -33,7 +33,7 @@ const WRITERS: [&str; 7] = [
      --width-m 0.04 --separation clamp_distance_m --force force_N",
 ];
 
-/// What is planted.
+/// A planted file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Plant {
     LinkToFile,
@@ -47,7 +47,7 @@ enum Plant {
 
 use Plant::{File, Folder, LinkToFile, LinkToFolder, LinkToNothing, Pipe, SecondName};
 
-/// Where in the work folder, and what must not be there.
+/// Paths in the work folder, and the plants that must be refused there.
 const PLANTS: [(&str, &[Plant]); 8] = [
     (".out.work", &[LinkToFile, LinkToFolder, LinkToNothing, Pipe, File]),
     (".out.work/lock", &[LinkToFile, LinkToFolder, LinkToNothing, SecondName, Pipe, Folder]),
@@ -59,7 +59,7 @@ const PLANTS: [(&str, &[Plant]); 8] = [
     (".out.work/old/curves", &[LinkToFile, LinkToFolder, LinkToNothing, Pipe]),
 ];
 
-/// A folder with a small set, a fit of it in `known`, a scene, a table, and victims.
+/// A folder with a small set, a fit of it in `known`, a scene, a table, and victim files.
 struct Bench(TempDir);
 
 impl Bench {
@@ -84,7 +84,7 @@ impl Bench {
         self.0.path().join(name)
     }
 
-    /// Runs the program; how it ended, and what it said on standard error.
+    /// Runs the program; returns its exit status and standard error.
     fn run(&self, arguments: &str) -> (ExitStatus, String) {
         let mut child = Command::new(env!("CARGO_BIN_EXE_fit-cloth"))
             .args(arguments.split_whitespace())
@@ -124,7 +124,7 @@ impl Bench {
         }
     }
 
-    /// The run is refused with the name of what was planted, and nothing came to harm.
+    /// Asserts that the run is refused, naming the plant, and that the victims are unchanged.
     fn refuses(&self, arguments: &str, named: &str) {
         let (status, said) = self.run(arguments);
         assert!(matches!(status.code(), Some(1 | 3)), "{arguments}: {status:?}: {said}");
@@ -159,7 +159,7 @@ fn what_is_planted_in_a_work_folder_is_named_and_its_victims_are_untouched() {
                 bench.clear(".out.work");
             }
         }
-        // It was this alone that stood in the way; comparing all models takes longest.
+        // Without the plant the run succeeds; not tried for comparisons, which take longest.
         if !command.starts_with("compare") {
             let (status, said) = bench.run(command);
             assert!(status.success() && bench.path("out").is_dir(), "{command}: {said}");
@@ -178,7 +178,7 @@ fn a_work_folder_that_others_own_or_may_write_is_not_used() {
         fs::set_permissions(&work, Permissions::from_mode(0o777)).unwrap();
         bench.refuses(command, ".out.work work folder: found a folder that others may write");
         fs::set_permissions(&work, Permissions::from_mode(0o755)).unwrap();
-        // Only root may give a folder away.
+        // Only root can change the owner of a folder.
         if chown(&work, Some(65534), None).is_ok() {
             bench.refuses(command, ".out.work work folder: found a folder of another user");
         }
@@ -203,11 +203,11 @@ fn a_file_is_not_written_into_what_is_none() {
         bench.refuses(scale, "out.csv");
         bench.clear("out.csv");
     }
-    // A work folder of that name is nothing to it.
+    // A command that writes a file ignores a work folder of that name.
     bench.plant(LinkToFolder, ".out.csv.work");
     assert!(bench.run(scale).0.success());
     bench.clear("out.csv");
-    // The path that somebody names may be a link.
+    // The path given by the user may be a link.
     bench.plant(LinkToFile, "out.csv");
     assert!(bench.run(scale).0.success() && bench.path("out.csv").is_symlink());
     assert!(fs::read_to_string(bench.path("victim")).unwrap().starts_with("green_strain,"));

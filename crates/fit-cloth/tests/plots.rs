@@ -1,5 +1,5 @@
-//! The figures of a fit and of a validation, of two fixtures: every series is there, axes have units, nothing is without
-//! a number, and no text leaves the figure or lies over another.
+//! Figures of fits and validations of two fixtures: every series is present, axes have units, all coordinates are
+//! numbers, and no text leaves the figure or overlaps another.
 
 #![allow(clippy::unwrap_used)]
 
@@ -20,11 +20,11 @@ const CURVES: [&str; 6] =
     ["stretch-weft", "stretch-warp", "shear", "bend-weft", "bend-warp", "bend-diagonal"];
 const SEQUENCES: [&str; 6] = ["stretch-weft", "stretch-warp", "shear", "bend-weft", "bend-warp", "bend-bias"];
 const VALIDATED: [&str; 2] = ["complex-shear", "corner-pull"];
-/// Nodes of a fixture's shape, and faces of a picture of it.
+/// Nodes of a fixture's grid, and faces of its picture.
 const NODES: usize = 25 * 25;
 const FACES: usize = 2 * 24 * 24;
 
-/// A fabric's results.
+/// Results of a fabric.
 struct Fitted {
     fit: PathBuf,
     validation: PathBuf,
@@ -60,24 +60,24 @@ impl Fitted {
         Figure::read(&self.validation.join(format!("plots/{name}.svg")))
     }
 
-    /// How many control points a curve has.
+    /// Number of control points of a curve.
     fn points(&self, curve: &str) -> usize {
         self.material["curves"][curve]["control_points"].as_array().unwrap().len()
     }
 
-    /// A sequence's row among the residuals.
+    /// Residuals of a sequence.
     fn residual(&self, sequence: &str) -> &Value {
         let rows = self.material["residuals"].as_array().unwrap();
         rows.iter().find(|row| row["sequence"] == sequence).unwrap()
     }
 
-    /// How many frames of a sequence took part.
+    /// Number of frames used of a sequence.
     fn frames(&self, sequence: &str) -> usize {
         self.residual(sequence)["frames"].as_u64().unwrap() as usize
     }
 }
 
-/// Fitted once.
+/// The fits, made once.
 fn fitted() -> &'static [Fitted; 2] {
     static FITTED: OnceLock<[Fitted; 2]> = OnceLock::new();
     FITTED.get_or_init(|| FABRICS.map(Fitted::new))
@@ -143,7 +143,7 @@ fn curves_have_band_points_and_the_strains_beneath() {
             let figure = fitted.plot(&figure);
             let common = ["share of the sheet [%]", "95 % band", "fit", "control points"];
             assert_eq!(figure.missing(&[&axes[..], &common].concat()), [""; 0]);
-            // Each with its sample in the legend; the band and its own are of one colour and a half.
+            // One more dot and line for the legend; the band is one polygon.
             let points = figure.count("circle", &[("fill", MODEL), ("r", "8")]);
             assert_eq!(points, fitted.points(curve) + 1, "{curve}");
             assert_eq!(figure.count("polyline", &[("stroke", MODEL), ("stroke-width", "4")]), 2, "{curve}");
@@ -151,7 +151,7 @@ fn curves_have_band_points_and_the_strains_beneath() {
             let bars = figure.count("polygon", &[("fill", "#009E73")]);
             assert!((6..=40).contains(&bars), "{curve}: {bars}");
         }
-        // Fits of shear reach beyond what was seen.
+        // Shear fits extend beyond the visited range.
         let shear = fitted.plot("shear-stress");
         assert_eq!(shear.missing(&["not visited", "fit, extrapolated"]), [""; 0]);
         assert_eq!(shear.count("polygon", &[("fill", "#6E6E6E")]), 2);
@@ -170,7 +170,7 @@ fn forces_are_a_loop_over_the_model() {
         let lines = |colour: &str, width: &str| {
             figure.count("polyline", &[("stroke", colour), ("stroke-width", width)])
         };
-        // The model's has a sample in the legend.
+        // The model's line has a sample in the legend.
         assert_eq!(lines(MODEL, "8"), lines(MEASURED, "2") + 1, "{}", figure.name);
         assert!(lines(MEASURED, "2") > 0, "{}", figure.name);
     };
@@ -253,9 +253,9 @@ fn residuals_stand_at_every_node_five_times_as_long() {
         assert!(told("residual: "), "{texts:?}");
         let arrows = figure.count("polyline", &[("stroke", MEASURED), ("stroke-width", "2")]);
         let dots = figure.count("circle", &[("fill", MEASURED)]);
-        // And the scale's.
+        // One more for the scale.
         assert_eq!(arrows + dots, NODES + 1, "{}", figure.name);
-        // Of the two scales that for residuals is five times as long.
+        // The scale of residuals is five times as long as the other.
         let millimetres = |text: &str| -> f64 { text.split(' ').rev().nth(1).unwrap().parse().unwrap() };
         let named = |wanted: &dyn Fn(&str) -> bool| {
             millimetres(&texts.iter().find(|text| wanted(&text.content)).unwrap().content)
@@ -325,12 +325,12 @@ fn every_pair_of_control_points_has_its_correlation() {
         assert!(
             alone >= points.iter().sum::<usize>() - texts.iter().filter(|text| text.content == "–").count()
         );
-        // A face and a border each.
+        // A face and a border for each pair.
         assert_eq!(figure.count("rect", &[("stroke", "#FFFFFF")]), pairs);
     }
 }
 
-/// What the tests above must not miss, on a figure that has none of it.
+/// The tests above detect faults planted in a sound figure.
 #[test]
 fn faults_are_seen() {
     let whole = fitted()[0].plot("shear-force");

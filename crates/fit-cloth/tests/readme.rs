@@ -1,4 +1,4 @@
-//! The README's tour, command after command, as a reader types it.
+//! Runs the commands of the README in order.
 
 #![allow(clippy::unwrap_used)]
 
@@ -6,13 +6,13 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What stands between fences, by its lines; a line may go on behind a backslash.
+/// The fenced blocks as lines; a line may continue after a backslash.
 fn blocks(text: &str) -> Vec<Vec<String>> {
     let inside = text.split("```").skip(1).step_by(2);
     inside.map(|block| block.replace("\\\n", " ").lines().skip(1).map(String::from).collect()).collect()
 }
 
-/// The arguments of a command, without the remark behind it.
+/// The arguments of a command, without a trailing comment.
 fn command(line: &str) -> Option<Vec<String>> {
     let line = line.split(" #").next().unwrap_or_default();
     let arguments =
@@ -20,7 +20,7 @@ fn command(line: &str) -> Option<Vec<String>> {
     Some(arguments.split_whitespace().map(String::from).collect())
 }
 
-/// A block that shows the forms of commands: SET stands for a set.
+/// True for a synopsis, in which SET is a placeholder.
 fn is_synopsis(block: &[String]) -> bool {
     block.iter().flat_map(|line| line.split_whitespace()).any(|word| word == "SET")
 }
@@ -43,7 +43,7 @@ fn the_tour_can_be_taken() {
         .filter_map(|line| command(line))
         .collect();
     let mut taken = Vec::new();
-    // Nothing on the way stands in the way of the first one again.
+    // The first command must still run after all others.
     for arguments in commands.iter().chain(&commands[..1]) {
         let output = Command::new(env!("CARGO_BIN_EXE_fit-cloth"))
             .args(arguments)

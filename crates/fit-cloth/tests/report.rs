@@ -1,4 +1,4 @@
-//! `report.html` and `report.json`: that they are written, hold the numbers of the other files, and can be written again.
+//! `report.html` and `report.json` are written, hold the numbers of the other files, and can be rewritten.
 
 #![allow(clippy::unwrap_used)]
 
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// What may be sent by mail.
+/// Size limit, so that a page can be sent by mail.
 const LARGEST_PAGE: usize = 3_000_000;
 
 fn run(arguments: &[&str], within: &Path) -> Output {
@@ -35,14 +35,14 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// The data that a page holds.
+/// The data embedded in a page.
 fn embedded(page: &Path) -> Value {
     let text = fs::read_to_string(page).unwrap();
     let (_, rest) = text.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
 
-/// A table's rows by column.
+/// Rows of a table as objects by column.
 fn table(path: &Path) -> Vec<Value> {
     let text = fs::read_to_string(path).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
@@ -78,7 +78,7 @@ fn the_page_holds_the_numbers_of_the_result() {
         assert_eq!(points.len(), array(entry).len());
         let mut quantiles = Vec::new();
         for (point, entry) in points.iter().zip(array(entry)) {
-            // Bending stands in the material over the model's own strain, on the page over curvature.
+            // Bending is over the model's own strain in the material, over curvature on the page.
             let bends = name.starts_with("bend");
             let unit = if bends { "n_m" } else { "n_per_m" };
             let [value, deviation] = ["stiffness", "deviation"].map(|what| &entry[format!("{what}_{unit}")]);
@@ -89,7 +89,7 @@ fn the_page_holds_the_numbers_of_the_result() {
                 point["share"].as_f64().unwrap() * value.as_f64().unwrap() / deviation.as_f64().unwrap(),
             );
         }
-        // 95 % of a normal distribution, or Student's of as many degrees of freedom for all points.
+        // 95 % quantile of a normal or Student distribution, with the same degrees of freedom for all points.
         let first = quantiles[0];
         assert!(first > 1.959 && first < 13.0, "{name}: {first}");
         assert!(quantiles.iter().all(|other| (other / first - 1.0).abs() < 1e-12), "{name}: {quantiles:?}");
@@ -145,7 +145,7 @@ fn forces_and_shapes_are_those_of_the_measurement_and_of_the_fit() {
     let forces = table(&path.join("out/forces.csv"));
     for sequence in sequences {
         for force in array(&sequence["forces"]) {
-            // The page shows sizes.
+            // The page shows absolute values.
             let size = |value: &Value| value.as_f64().unwrap().abs();
             let is_it = |row: &&Value| {
                 row["sequence"] == sequence["name"]
@@ -159,7 +159,7 @@ fn forces_and_shapes_are_those_of_the_measurement_and_of_the_fit() {
         assert!(shown > 0);
         let bends = sequence["name"].as_str().unwrap().starts_with("bend");
         assert_eq!(array(&sequence["profiles"]).len(), if bends { shown } else { 0 });
-        // A strip at 5 %: both bars are pulled along one line, opposite ways, and the model's force is close.
+        // A strip at 5 %: both bars are pulled along one line in opposite directions, and the model's force is close.
         if sequence["name"] == "stretch-weft" {
             let last = array(&sequence["frames"]).last().unwrap();
             let arrows = array(&last["arrows"]);
@@ -200,7 +200,7 @@ fn models_share_a_page() {
     let models: Vec<&Value> = array(&data["fits"]).iter().map(|fit| &fit["model"]).collect();
     assert_eq!(models, ["stvk", "soft-constraint", "springs"]);
     assert!(!path.join("out/stvk/report.html").exists());
-    // A former result of several models is replaced.
+    // A previous result of several models is replaced.
     let output = run(&["fit", "set", "--nodes", "9x9", "--out", "out", "--no-report"], &path);
     assert!(output.status.success(), "{}", error(&output));
 }
@@ -249,13 +249,13 @@ fn the_verdict_says_what_is_missing_given_and_unsure() {
     // The set has no test of diagonal bending.
     let all = words(&["fit", "set"]);
     says(&all, "state", "Converged: 5 of 6 curves fitted, without a curve: bend-diagonal.");
-    says(&all, "next", "What would tell most: a test that shows bend-diagonal, then more frames of");
-    says(&all, "good", "Measured forces are met within 0.");
+    says(&all, "next", "Most informative next: a test that observes bend-diagonal, then more frames of");
+    says(&all, "good", "Worst rms residuals: forces 0.");
     assert_eq!(all["sound"], false);
     let given = words(&["bend", "set", "--known", "out/material.json"]);
     says(&given, "state", "Converged: 2 of 6 curves fitted, 3 given, without a curve: bend-diagonal.");
-    says(&given, "good", "Measured shapes are met within");
-    // Ring-2 springs do not tell a sheet off a table apart: the test is there, and is not asked for again.
+    says(&given, "good", "Worst rms residuals: shapes");
+    // A sheet off a table does not determine ring-2 springs: the test exists and is not suggested again.
     let springs = words(&["fit", "set", "--model", "springs"]);
     says(
         &springs,
@@ -306,5 +306,5 @@ fn bad_data_of_a_page_is_named_with_line_and_key() {
     );
     says(&good.replacen("\"about\"", "\"abuot\"", 1), "fits[0].abuot: found an unknown key");
     let (head, _) = good.split_once("\"fits\":").unwrap();
-    says(&format!("{head}\"fits\":[],\"ranking\":null}}"), "fits: found none, expected one at least");
+    says(&format!("{head}\"fits\":[],\"ranking\":null}}"), "fits: found none, expected at least one");
 }

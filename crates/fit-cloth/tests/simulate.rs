@@ -1,4 +1,4 @@
-//! The program `fit-cloth simulate` on tiny scenes, run as a user runs it.
+//! `fit-cloth simulate` on tiny scenes, run as a user does.
 
 #![allow(clippy::unwrap_used)]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A strip of four cells in height, 1 m long, held along its top.
+/// A strip four cells high, 1 m long, held along its top.
 const SCENE: &str = "\
 name = \"strip\"
 gravity_m_s2 = [0.0, 0.0, -10.0]
@@ -69,7 +69,7 @@ fn a_strip_sinks_in_time_and_every_file_is_there() {
     assert_eq!(table.lines().count(), 1 + 1 + 40);
     let columns = "time_s,kinetic_j,elastic_j,weight_j,damping_j,wind_j,total_j,numerical_j,newton_iterations,linear_iterations,imbalance_n";
     assert_eq!(table.lines().next().unwrap(), columns);
-    // What is there, what damping took and what the integrator lost add up to the start.
+    // Energy left, dissipated by damping and lost by the integrator add up to the initial energy.
     let row = |line: &str| line.split(',').map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<_>>();
     let [start, end] = [table.lines().nth(1).unwrap(), table.lines().last().unwrap()].map(row);
     assert!(
@@ -79,7 +79,7 @@ fn a_strip_sinks_in_time_and_every_file_is_there() {
     assert!(end[1] >= 0.0 && end[3] < start[3] && end[4] > 0.0, "{end:?}");
     assert!(fs::read_to_string(out.join("plots/shapes.svg")).unwrap().contains("<polygon"));
     assert!(out.join("mesh.obj").exists());
-    // A second run replaces the first, with its own files only.
+    // A second run replaces the first and leaves only its own files.
     let output = simulate(folder.path(), &["--format", "npy", "--duration", "0.1", "--json"]);
     assert_eq!(json(&output)["motion"]["steps"], 10);
     assert!(out.join("positions.npy").exists() && !out.join("frames").exists());
@@ -91,7 +91,7 @@ fn at_rest_it_is_as_long_as_its_weight_makes_it() {
     let output = simulate(folder.path(), &["--rest", "--json"]);
     let json = json(&output);
     assert!(output.status.success() && json["converged"] == true && json["rest"]["stable"] == true, "{json}");
-    // Lumped masses: half a cell's weight at the end, so that the sum is ρ g L²/2k, as of a continuum.
+    // Lumped masses, half a cell's weight at the end: the sink is ρ g L²/2k, as for a continuum.
     let sink = json["droop"]["bottom_edge_sinks_m"].as_f64().unwrap();
     assert!((sink / (0.2 * 10.0 / (2.0 * 100.0)) - 1.0).abs() < 0.02, "{json}");
     let force = json["hold_forces_n"][0][2].as_f64().unwrap();
@@ -106,14 +106,14 @@ fn at_rest_it_is_as_long_as_its_weight_makes_it() {
 
 #[test]
 fn what_is_left_out_is_not_there_and_what_may_move_moves() {
-    // Along weft only: the top then stays as high, and is free to close in.
+    // Free along weft only: the top keeps its height and may contract.
     let guided =
         SCENE.replace("edge = \"top\"", "edge = \"top\"\nfree = \"line\"\ndirection = [1.0, 0.0, 0.0]");
     let fewer = format!("components = [\"stretch-warp\", \"shear\"]\n{guided}");
     let folder = folder(&fewer, CLOTH);
     let output = simulate(folder.path(), &["--json", "--duration", "0.02"]);
     let [_, errors] = said(&output);
-    // Nothing is held that a droop could be measured from.
+    // Without held nodes, droop cannot be measured.
     assert_eq!(output.status.code(), Some(3), "{errors}");
     fs::write(folder.path().join("scene.toml"), fewer.replace("measure = \"droop\"\n", "")).unwrap();
     let json = json(&simulate(folder.path(), &["--json", "--duration", "0.02"]));
@@ -129,7 +129,7 @@ fn what_is_left_out_is_not_there_and_what_may_move_moves() {
 
 #[test]
 fn motion_that_leads_to_nowhere_stops_at_its_last_good_state() {
-    // The gust is nothing at first, and beyond all numbers later.
+    // The gust starts at zero and overflows later.
     let storm = "[wind]\nvelocity_m_s = [0, 1, 0]\ngust_m_s = [0, 1e150, 0]\ngust_period_s = 1.0\n";
     let folder = folder(&format!("{SCENE}{storm}"), CLOTH);
     let output = simulate(folder.path(), &["--json"]);
@@ -149,7 +149,7 @@ fn motion_that_leads_to_nowhere_stops_at_its_last_good_state() {
     assert!(words.contains("NOT converged: step") && words.contains("last good state"), "{words}");
 }
 
-/// The exit code is 3, and the error says where and what.
+/// Asserts exit code 3 and an error with place and words.
 fn refused(scene: &str, cloth: &str, more: &[&str], place: &str, words: &str) {
     let folder = folder(scene, cloth);
     let output = simulate(folder.path(), more);
@@ -204,7 +204,7 @@ fn bad_materials_are_refused_with_file_and_line() {
         "finite",
     );
     bad("shear", "sheer", "cloth.toml:7 ", "sheer");
-    // Stress that falls as strain grows.
+    // Stress falls as strain grows.
     let falls = CLOTH.replace(
         "shear = { stiffness_n_per_m = 10.0 }",
         "shear = { strain = [0.0, 0.1, 0.2], stiffness_n_per_m = [10.0, 9.0, 1.0] }",
@@ -258,7 +258,7 @@ fn a_sheet_far_away_hangs_as_one_nearby_does() {
     let ((near, here), (far, there)) =
         (rest(SCENE), rest(&SCENE.replace("warp = ", "origin_m = [5e6, -3e6, 400.0]\nwarp = ")));
     let sink = |json: &Value| json["droop"]["bottom_edge_sinks_m"].as_f64().unwrap();
-    // Where the sheet lies is rounded to 1e-9 m there.
+    // Coordinates are rounded to 1e-9 m there.
     assert!((sink(&near) - sink(&far)).abs() < 1e-8, "{near} {far}");
     let [imbalance, allowed] = ["imbalance_n", "tolerance_n"].map(|key| far["rest"][key].as_f64().unwrap());
     assert!(imbalance < 1e-6 && allowed < 1e-4, "{far}");

@@ -1,7 +1,7 @@
-//! The program `fit-cloth stretch` and `fit-cloth rig`, run as a user runs them.
+//! `fit-cloth stretch` and `fit-cloth rig`, run as a user does.
 //!
-//! The fixture ends with two curves and a residual table; every file comes out the same on one and on two threads; bad
-//! input ends with code 3, a sentence that names file, line and field, and nothing written.
+//! The fixture gives two curves and a residual table; every file is the same on one and two threads; bad input gives
+//! exit code 3, a message with file, line and field, and no output.
 
 #![allow(clippy::unwrap_used)]
 
@@ -147,7 +147,7 @@ fn a_fit_as_published_says_so() {
     };
     assert_eq!(provenance(&out)["as_published"], true);
     assert_eq!(provenance(&out)["constraints"], "control-points");
-    // Ours ends elsewhere, though not far off, and says nothing.
+    // The default method gives a different but close result, and prints no such line.
     let ours = folder.path().join("ours");
     assert!(fit(&fixture(), &ours, &[]).status.success());
     assert!(provenance(&ours).get("as_published").is_none());

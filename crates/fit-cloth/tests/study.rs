@@ -1,4 +1,4 @@
-//! The smallest possible study: its tables hold together, whatever the machine and its times.
+//! The smallest possible study: its tables are consistent on any machine.
 
 #![allow(clippy::unwrap_used)]
 
@@ -33,7 +33,7 @@ fn smallest() -> Extent {
     }
 }
 
-/// A study of a set whose bending tests are missing.
+/// A study of a set without bending tests.
 fn study() -> Study {
     let extent = smallest();
     let mut subject = Subject::built_in(&extent).unwrap();
@@ -44,8 +44,8 @@ fn study() -> Study {
 #[test]
 fn a_study_holds_together() {
     let study = study();
-    // Orders: from three meshes, of the scenes that are smooth. The strip bends most near its bars, within two cells of the
-    // coarsest mesh: from 25 nodes on its order is 2.1.
+    // Orders of convergence from three meshes, for smooth scenes. The strip bends most near its bars, within two cells
+    // of the coarsest mesh: from 25 nodes on its order is 2.1.
     for (scene, near_two) in [("sagging strip", 1.8..3.0), ("picture frame", 1.7..2.6)] {
         let order = study.part(Part::Equilibrium).filter(|run| run.test == scene).find_map(|run| run.order);
         println!("{scene}: order {order:?}");
@@ -54,14 +54,14 @@ fn a_study_holds_together() {
     for run in study.part(Part::Equilibrium).filter(|run| run.nodes < 49) {
         assert!(run.failed() || run.error_position_mm.is_some(), "{run:?}");
     }
-    // Both solvers meet the same equilibria.
+    // Both solvers find the same equilibria.
     let error = |solver| {
         let mut runs = study.part(Part::Equilibrium).filter(|r| r.test == "bars in shear" && r.nodes == 25);
         runs.find(|run| run.solver == solver).unwrap().error_position_mm.unwrap()
     };
     assert!((error(Solver::Default) / error(Solver::AsPublished) - 1.0).abs() < 0.01);
 
-    // Without bending tests there are no bending curves, and every fit says so.
+    // Without bending tests there are no bending curves, and every fit reports it.
     let fits: Vec<_> = study.part(Part::Fit).collect();
     assert_eq!(fits.len(), 4);
     for run in &fits {
@@ -71,7 +71,7 @@ fn a_study_holds_together() {
     let stages = study.part(Part::Stage).filter(|run| run.test.starts_with("stretch"));
     assert!(stages.filter(|run| run.points == Some(5)).all(|run| run.error_curve.unwrap() < 0.01));
 
-    // Near the least that the noise allows, where only it errs.
+    // Near the Cramér–Rao bound, where noise is the only error.
     for level in levels(&study).iter().filter(|level| level.test.ends_with("own mesh")) {
         let ratio = level.error / level.floor.unwrap();
         println!("{}: {ratio:.2} times the floor", level.test);
@@ -104,7 +104,7 @@ fn tables_hold_together(study: &Study) {
         !best.is_empty() && best.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] > pair[1][1])
     );
     for point in &points {
-        // None is both faster and notably better than all of the front.
+        // No run is both faster and clearly better than the whole front.
         assert!(best.iter().any(|on| on[0] <= point[0] && on[1] <= point[1] / 0.99), "{point:?} {best:?}");
     }
 }

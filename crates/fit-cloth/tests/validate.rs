@@ -1,4 +1,4 @@
-//! The programs `fit-cloth fit` and `validate` on fixtures with all eight tests, run as a user runs them.
+//! `fit-cloth fit` and `validate` on fixtures with all eight tests, run as a user does.
 
 #![allow(clippy::unwrap_used)]
 
@@ -32,7 +32,7 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// A folder with the fit of the denim in `fit`, made once.
+/// A folder with a fit of the denim in `fit`, made once.
 fn fitted() -> &'static Path {
     static FOLDER: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
     let (_, path) = FOLDER.get_or_init(|| {
@@ -45,13 +45,14 @@ fn fitted() -> &'static Path {
     path
 }
 
-/// On the grid of the fit.
+/// Validates on the grid of the fit.
 fn validate(set: &str, out: &Path, more: &[&str]) -> Output {
     let material = fitted().join("material.json");
     run(&[&["validate", set, "--material", text(&material), "--out", text(out)], &COARSE[..2], more].concat())
 }
 
-/// Imports a strip cut on the bias into a set of that name, pulled in even steps to a tenth by some forces; the set.
+/// Imports a bias strip, pulled in even steps to a strain of 0.1 by the given forces, into a set of that name; returns
+/// the set's folder.
 fn bias_strip(folder: &Path, name: &str, [length, width]: [f64; 2], forces: &[f64]) -> PathBuf {
     let [table, set] = [format!("{name}.csv"), name.to_string()].map(|name| folder.join(name));
     let row = |(i, force)| format!("{},{force}\n", 0.1 * length * (i + 1) as f64 / forces.len() as f64);
@@ -78,7 +79,7 @@ fn bias_strip(folder: &Path, name: &str, [length, width]: [f64; 2], forces: &[f6
     set
 }
 
-/// The same for a cloth of stiff yarns and a constant shear stiffness, each strip simulated on its own grid.
+/// The same for a cloth of stiff yarns and constant shear stiffness; each strip is simulated on its own grid.
 fn cloth_on_the_bias(folder: &Path, name: &str, size: [f64; 2]) -> PathBuf {
     let set = read_set(&bias_strip(folder, name, size, &[1.0; 8])).unwrap();
     let stiffnesses =
@@ -106,7 +107,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// Residual of the forces of a set's only sequence as a fit, or a validation, writes it.
+/// Rms force of a set's only sequence, from the output of a fit or a validation.
 fn force_rms(path: &Path, sequences: &str) -> f64 {
     json(path)[sequences][0]["rms_force_n"].as_f64().unwrap()
 }
@@ -132,7 +133,7 @@ fn a_strip_of_other_proportions_has_a_grid_of_its_own_and_is_met_as_by_its_own_f
     let largest = json(&out.join("validation.json"))["sequences"][0]["largest_force_n"].as_f64().unwrap();
     let [alone, other] =
         [force_rms(&of_wide, "residuals"), force_rms(&out.join("validation.json"), "sequences")];
-    // Either fit has assumed yarns of its own. Cells of the other strip's shape would lock, and miss by as much again.
+    // Each fit assumes its own yarn stiffness. Cells of the other strip's shape would lock and double the error.
     assert!((other - alone).abs() < 0.02 * largest, "{alone} {other} of {largest}: {words}");
 }
 
@@ -162,7 +163,7 @@ fn the_denim_ends_with_six_curves() {
     let residuals = fs::read_to_string(fitted().join("residuals.csv")).unwrap();
     assert_eq!(residuals.lines().count(), 1 + 6, "{residuals}");
     let plot = fs::read_to_string(fitted().join("plots/shear-force.svg")).unwrap();
-    // The bars turn, and all their frames are in the figure.
+    // The bars turn, and all frames are in the figure.
     assert!(plot.matches("<circle").count() > 8, "{plot}");
 }
 
@@ -173,7 +174,10 @@ fn motions_that_no_fit_saw_are_met_within_a_tenth() {
     let output = validate(&fixture("cotton-denim"), &out, &[]);
     let [words, errors] = said(&output);
     assert!(output.status.success(), "{errors}");
-    assert!(words.contains("aggregated torque") && words.contains("meet the aggregated torque"), "{words}");
+    assert!(
+        words.contains("aggregated torque") && words.contains("reproduce the aggregated torque"),
+        "{words}"
+    );
     // The second run replaces the first.
     let output = validate(&fixture("cotton-denim"), &out, &["--json", "--threads", "1"]);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -296,9 +300,8 @@ fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
         assert!(output.status.success(), "{}", said(&output)[1]);
         said(&output)[1].clone()
     };
-    let warning =
-        "warning: bending of springs belongs to the grid of its fit, 13x13; --nodes tries bend-warp on it\n";
-    // What `check` finds in so short a curve is warned of beside it.
+    let warning = "warning: bending curves of springs hold only on the grid of their fit, 13x13; simulate bend-warp on it with --nodes\n";
+    // Findings of `check` on so short a curve are warnings, too.
     let [own_grid, grid_of_fit] = [validate(&[]), validate(&coarse[..2])];
     assert!(
         own_grid.contains(warning) && !grid_of_fit.contains("the grid of its fit"),

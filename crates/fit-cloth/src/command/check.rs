@@ -1,4 +1,4 @@
-//! `fit-cloth check`: whether curves can be simulated, and the nearest that can.
+//! `fit-cloth check`: checks curves for simulation and repairs them.
 
 use crate::failure::Failure;
 use crate::options::Reading;
@@ -15,7 +15,7 @@ use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Its help.
+/// Help text after the options.
 pub const EXAMPLE: &str = "\
 Exit code: 0 if FILE is sound, 3 if it has a defect, even when --repair has written a sound curve.
 
@@ -39,10 +39,10 @@ pub struct CheckOptions {
     pub reading: Reading,
 }
 
-/// Checks curves, and repairs them if asked to.
+/// Checks curves, and repairs them if requested.
 ///
 /// # Errors
-/// A bad file; a curve that cannot be repaired; what the operating system refuses.
+/// A bad file; a curve that cannot be repaired; I/O errors.
 pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (source, subjects) = read(&options.file, options.reading.component(), options.reading.model())?;
     let repairs = match &options.repair {
@@ -58,7 +58,7 @@ pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) ->
     Ok(if sound { Outcome::Done } else { Outcome::Defective })
 }
 
-/// The repairs, written.
+/// Repairs the curves and writes them.
 fn write_repairs(
     options: &CheckOptions,
     out: &Path,
@@ -69,7 +69,7 @@ fn write_repairs(
         .iter()
         .map(|subject| {
             repair(&subject.curve, &subject.context).map_err(|reason| {
-                let expected = "a curve that a repair can mend; nothing is written";
+                let expected = "a curve that can be repaired; nothing is written";
                 Error::input(&options.file, None, &subject.name, reason.to_string(), expected)
             })
         })
@@ -101,7 +101,8 @@ fn json(
     let curve = |(index, subject): (usize, &Subject)| {
         let scale = subject.strain_per_unit;
         let finding = |finding: &Finding| {
-            // A stiffness over the file's own strain; ratios and shares have no scale. JSON has no infinity.
+            // Stiffnesses are converted to the file's strain; ratios and shares are dimensionless. JSON has no
+            // infinity.
             let factor =
                 if matches!(finding.kind, Kind::TangentRatio | Kind::Unvisited) { 1.0 } else { scale };
             let strains =

@@ -1,4 +1,4 @@
-//! `fit-cloth compare`: three models in four variants on one measurement set.
+//! `fit-cloth compare`: fits three models in four variants to one measurement set and ranks them.
 
 use super::journal::{program, recalled};
 use super::kinds::{has_any, nothing};
@@ -45,18 +45,17 @@ pub struct CompareOptions {
     pub no_report: bool,
 }
 
-/// What is kept of a contestant: its figures, and what the page shows of it.
+/// The stored result of a contestant: its row of the comparison and its part of the page.
 #[derive(Serialize, Deserialize)]
 struct Shown {
     row: Row,
     fit: Option<Fit>,
 }
 
-/// Fits, predicts and ranks.
+/// Fits, predicts and ranks all contestants.
 ///
 /// # Errors
-/// Bad input, nothing that any model can fit, or an output folder that is no former result; what the operating system
-/// refuses.
+/// Bad input; a set that no model can fit; an output folder that is not a previous result; I/O errors.
 pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (set, out) = options.on.open("-compare")?;
     let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).collect();
@@ -98,7 +97,7 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
     let (rows, fits): (Vec<Row>, Vec<Option<Fit>>) =
         finished.into_iter().map(|Shown { row, fit }| (row, fit)).unzip();
     let fits: Vec<Fit> = fits.into_iter().flatten().collect();
-    // What none of them can fit is bad input.
+    // A set that no contestant can fit is bad input.
     if let Some(error) = refused.filter(|_| rows.iter().all(|row| row.failure.is_some())) {
         return Err(error.into());
     }

@@ -1,4 +1,4 @@
-//! `fit-cloth curve`: edits of curves.
+//! `fit-cloth curve`: edits a curve.
 
 mod edited;
 pub mod extend;
@@ -40,7 +40,7 @@ pub enum CurveEdit {
 /// Edits a curve.
 ///
 /// # Errors
-/// A bad file or option; what the operating system refuses.
+/// A bad file or option; I/O errors.
 pub fn run(curve: &Curve, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &curve.edit {
         CurveEdit::Scale(options) => scale::run(options, telling, output),

@@ -1,4 +1,4 @@
-//! `fit-cloth stretch | shear | bend | fit`: curves from a measurement set.
+//! `fit-cloth stretch | shear | bend | fit`: fits curves to a measurement set.
 
 use super::goal::Goal;
 use super::journal::{program, recalled};
@@ -27,16 +27,16 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
-/// What one model's fit has found.
+/// Result of one model's fit.
 struct Fitted {
     report: FitReport,
     material: MaterialFile,
 }
 
-/// Fits what the command is about, and what that builds on. A model that fails beside others costs only its own result.
+/// Fits the requested curves and those they depend on. With several models, one that fails loses only its own result.
 ///
 /// # Errors
-/// Bad input, nothing to fit, or an output folder that is no former result; what the operating system refuses.
+/// Bad input; nothing to fit; an output folder that is not a previous result; I/O errors.
 pub fn run(
     goal: Goal,
     flags: &FitFlags,
@@ -47,7 +47,7 @@ pub fn run(
     let tests = goal.tests();
     if !tests.is_empty() && !has_any(&set, &tests) {
         let error = nothing(&flags.on.set, &set, &tests);
-        return Err(with_option(error, "fit-cloth fit takes what a set has").into());
+        return Err(with_option(error, "fit-cloth fit uses all tests of a set").into());
     }
     let inspection = inspect(&set);
     if !has_any(&inspection.set, &tests) {
@@ -62,7 +62,7 @@ pub fn run(
         let mut memory = Memory { finished, keep: Box::new(|finished| out.keep(finished)) };
         match fit_model(goal, &set, flags, model, given.as_ref(), &mut memory, telling) {
             Ok(fitted) => results.push(fitted),
-            // A disk that is full is so for every model.
+            // A full disk affects every model.
             Err(failure) if failure.exit_code() == 1 => return Err(failure),
             Err(failure) => failures.push((model, failure)),
         }
@@ -71,18 +71,18 @@ pub fn run(
         return failures.into_iter().next().map_or(Ok(Outcome::Done), |(_, failure)| Err(failure));
     }
     write(&out, &set, models.len() > 1, !flags.no_report, &results)?;
-    // All is on disk before the first word: a reader who has read enough must not cost the result.
+    // Everything is on disk before the first output: a reader that stops early must not cost the result.
     for (model, failure) in &failures {
         warn(telling, &format!("{model} has no result: {}", failure.in_words()));
     }
-    // Every model was fitted to the same measurements.
+    // Notices about the measurements are the same for every model.
     for notice in results.iter().take(1).flat_map(|fitted| &fitted.report.notices) {
         warn(telling, &notice.to_string());
     }
     for Fitted { report, material } in &results {
-        // Those that were given are among them.
+        // Given curves are checked, too.
         warn_of_defects(telling, &report.model.to_string(), &check_material(material)?);
-        // Why a sequence was refused has been said.
+        // The reason for refusing a sequence has been printed already.
         let is_said = |failure: &&Failed| report.notices.iter().any(|n| n.to_string() == failure.reason);
         for failure in report.failures.iter().filter(|failure| !is_said(failure)) {
             warn(telling, &format!("{}: {}", report.model, failure.in_words()));
@@ -106,7 +106,7 @@ pub fn run(
     Ok(if converged { Outcome::Done } else { Outcome::NotConverged })
 }
 
-/// The given curves; they must be over the strains of the model that is fitted, and must outlive the fit.
+/// Reads the --known curves. They must match the settings of the fit, and the file must lie outside the output folder.
 fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFile, Failure> {
     let refuse = |field: &str, found: String, expected: String| {
         Err(Failure::from(Error::input(path, None, field, found, expected)))
@@ -124,7 +124,7 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
         }
         if settings.variant.is_isotropic() && !file.variant.is_isotropic() {
             let expected = format!(
-                "one that shares weft's and warp's curves, as --variant {} (--variant {}, or another --known)",
+                "one with shared weft and warp curves, as --variant {} (--variant {}, or another --known)",
                 settings.variant, file.variant
             );
             return refuse("variant", file.variant.to_string(), expected);
@@ -143,7 +143,7 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     Ok(file)
 }
 
-/// The stages that the same command has finished before it was stopped.
+/// Stages finished by an earlier, stopped run of the same command.
 fn recall(
     goal: Goal,
     set: &MeasurementSet,
@@ -189,7 +189,7 @@ fn fit_model(
     Ok(Fitted { report, material })
 }
 
-/// Doubts what was fitted with curves that are another fabric's.
+/// Adds a notice to every fitted sequence if the known curves belong to another fabric.
 fn doubt_known(report: &mut FitReport, known: &str, fabric: &str) {
     let names: BTreeSet<&String> = report.sequences().iter().map(|(_, sequence)| &sequence.name).collect();
     let notice = |name: &String| {
@@ -204,8 +204,8 @@ fn doubt_known(report: &mut FitReport, known: &str, fabric: &str) {
     report.notices.extend(notices);
 }
 
-/// * `several` — models: each has a folder of its own, and all share a page
-/// * `paged` — whether there is a page
+/// * `several` — several models: a folder for each, and one page for all
+/// * `paged` — write the page
 fn write(
     out: &Output,
     set: &MeasurementSet,
@@ -231,7 +231,7 @@ fn write(
     Ok(())
 }
 
-/// Each model's `material.json` under its name, or why there is none.
+/// Each model's `material.json` under its name, or the reason for its failure.
 fn json(results: &[Fitted], failures: &[(Model, Failure)]) -> Value {
     let fitted = results.iter().map(|Fitted { report, material }| {
         (report.model.to_string(), serde_json::to_value(material).unwrap_or(Value::Null))
@@ -241,7 +241,7 @@ fn json(results: &[Fitted], failures: &[(Model, Failure)]) -> Value {
     Value::Object(fitted.chain(failed).collect::<Map<_, _>>())
 }
 
-/// What one model's fit has found, for a person.
+/// Prints one model's fit as text.
 fn tell_model(
     goal: Goal,
     set: &MeasurementSet,
@@ -267,7 +267,7 @@ fn tell_model(
     }
     let used = report.sequences();
     for sequence in set.sequences.iter().filter(|s| !used.iter().any(|(_, used)| used.name == s.name)) {
-        writeln!(output, "{} ({}) takes no part in this fit\n", sequence.name, sequence.kind)?;
+        writeln!(output, "{} ({}) is not used in this fit\n", sequence.name, sequence.kind)?;
     }
     writeln!(output, "{}", text::residuals(report))?;
     for stage in report.last_stages() {

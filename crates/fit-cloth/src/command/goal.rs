@@ -1,4 +1,4 @@
-//! What `fit-cloth stretch | shear | bend | fit` are about, and their examples.
+//! Goals of `fit-cloth stretch | shear | bend | fit`, and their help examples.
 
 use cloth_data::frame::Kind;
 use cloth_fit::incremental::Stage;
@@ -41,21 +41,21 @@ Example:
 Fits stretch, shear and bending in this order, then shear and bending once more. A curve that no sequence observes is not
 fitted, and a warning names it. An interrupted run resumes after the last finished curve.";
 
-/// What a command is about.
+/// The curves that a fit command asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Goal {
     /// Stretch.
     Stretch,
-    /// Shear, and what it builds on.
+    /// Shear, and the stretch curves that it depends on.
     Shear,
-    /// Bending, and what it builds on.
+    /// Bending, and the stretch and shear curves that it depends on.
     Bend,
-    /// All that is not given.
+    /// Every curve that is not given by --known.
     All,
 }
 
 impl Goal {
-    /// What is fitted, in order, unless it is given.
+    /// Stages to fit, in order, unless their curves are given.
     pub fn stages(self) -> &'static [Stage] {
         match self {
             Self::Stretch => &Stage::ALL[..1],
@@ -64,7 +64,7 @@ impl Goal {
         }
     }
 
-    /// What is fitted even if it is given.
+    /// Components that are fitted even if they are given.
     pub fn anew(self) -> &'static [Component] {
         match self {
             Self::Stretch => Stage::Stretch.components(),
@@ -74,18 +74,19 @@ impl Goal {
         }
     }
 
-    /// The tests that it is about, without which there is nothing to fit; none where it takes what a set shows.
+    /// Kinds of test of which the set must have at least one; empty if any test will do.
     pub fn tests(self) -> Vec<Kind> {
         kinds_of_all(self.anew())
     }
 
-    /// The curves that are missed where a set does not show them: bending hardly feels the others.
+    /// Components to warn about if the set does not observe them. For `bend` these are the bending curves only: the
+    /// others hardly affect bending.
     pub fn components(self) -> impl Iterator<Item = Component> {
         let stages = if self == Self::Bend { &[Stage::Bend][..] } else { self.stages() };
         stages.iter().flat_map(|stage| stage.components()).copied()
     }
 
-    /// The tests that show what is not known.
+    /// Kinds of test that observe the unknown curves.
     pub fn kinds(self, known: &Knowledge) -> Vec<Kind> {
         let fits = |stage: &&Stage| !stage.components().iter().all(|&component| known.knows(component));
         self.stages().iter().filter(fits).flat_map(|stage| stage.kinds()).collect()

@@ -1,4 +1,4 @@
-//! `fit-cloth import`: a laboratory's table into a measurement set, or into a curve.
+//! `fit-cloth import`: converts a laboratory's table into a measurement set or a curve.
 
 pub mod selection;
 pub mod strip;
@@ -24,7 +24,7 @@ fit-cloth import strip --help and fit-cloth import table --help explain every op
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct Import {
-    /// The table.
+    /// The kind of table.
     #[command(subcommand)]
     pub table: ImportTable,
 }
@@ -41,7 +41,7 @@ pub enum ImportTable {
 /// Imports a table.
 ///
 /// # Errors
-/// The table, the set or an option is not what it should be; the operating system refuses.
+/// A bad table, set or option; I/O errors.
 pub fn run(import: &Import, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &import.table {
         ImportTable::Strip(options) => strip::run(options, telling, output),

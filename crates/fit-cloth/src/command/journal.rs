@@ -1,29 +1,26 @@
-//! What a run that was stopped has finished, for the same command to go on after.
+//! Resuming a stopped run from its journal of finished parts.
 
 use crate::telling::{Telling, note, warn};
 use cloth_data::store::Recalled;
 use serde::Serialize;
 
-/// Which program this is: a journal of another one is of no use. A build in development keeps its version number, so
-/// the file's age and size count too.
+/// Identifies the program: the journal of another one is discarded. Development builds share a version number, so the
+/// executable's size and modification time count too.
 pub(super) fn program() -> impl Serialize {
     let file = std::env::current_exe().and_then(std::fs::metadata).ok();
     let file = file.map(|file| (file.len(), file.modified().ok()));
     (env!("CARGO_PKG_VERSION"), file)
 }
 
-/// The records of a run that was stopped; says on standard error that they are used, or not.
+/// Returns the records of a stopped run, and notes on standard error whether they are used.
 pub(super) fn recalled<T>(recalled: Recalled<T>, telling: Telling, name: impl Fn(&T) -> String) -> Vec<T> {
     let Recalled { records, forgotten } = recalled;
     if forgotten {
-        warn(
-            telling,
-            "what an interrupted run had finished was of other input or settings, and is forgotten",
-        );
+        warn(telling, "discarded the results of an interrupted run: it had other input or settings");
     }
     if !records.is_empty() {
         let names: Vec<String> = records.iter().map(name).collect();
-        note(telling, &format!("going on after what an interrupted run has finished: {}", names.join("; ")));
+        note(telling, &format!("resuming an interrupted run; already finished: {}", names.join("; ")));
     }
     records
 }

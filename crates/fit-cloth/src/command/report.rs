@@ -1,4 +1,4 @@
-//! `fit-cloth report`: the page of a result folder, written again.
+//! `fit-cloth report`: rewrites the page of a result folder.
 
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -26,10 +26,10 @@ pub struct ReportOptions {
     pub dir: PathBuf,
 }
 
-/// Writes the page.
+/// Rewrites the page.
 ///
 /// # Errors
-/// A folder without the data of a page, or with other data; what the operating system refuses.
+/// A folder without valid page data; I/O errors.
 pub fn run(options: &ReportOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let page = Page::read(&options.dir)?;
     let path = whole(|| page.write_again(&options.dir))?;

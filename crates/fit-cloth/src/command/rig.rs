@@ -1,4 +1,4 @@
-//! `fit-cloth rig`: a known fabric into a measurement set.
+//! `fit-cloth rig`: measures a known fabric on a virtual rig.
 
 use crate::failure::Failure;
 use crate::options::{parse_kind, parse_nodes};
@@ -72,10 +72,10 @@ pub struct RigOptions {
     pub seed: u64,
 }
 
-/// Measures the fabric.
+/// Measures the fabric and writes the set.
 ///
 /// # Errors
-/// A fabric or a setting that cannot be; what the operating system refuses.
+/// An invalid fabric or setting; I/O errors.
 pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let fabric = known_fabric(&options.fabric)?;
     let rig = Rig {
@@ -107,7 +107,7 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
     Ok(Outcome::Done)
 }
 
-/// Only what a rig wrote is replaced: never a set that somebody measured, or other files.
+/// Refuses a folder with anything but a set written by the rig: real measurements and other files are never replaced.
 fn refuse_measured(folder: &Path) -> Result<(), Failure> {
     let entries: Vec<String> = std::fs::read_dir(folder)
         .into_iter()
@@ -127,7 +127,7 @@ fn refuse_measured(folder: &Path) -> Result<(), Failure> {
     Err(Error::input(folder, None, "--out", "a folder with other things in it", expected).into())
 }
 
-/// A test of the rig by its name.
+/// Parses the name of a test that the rig can simulate.
 fn parse_test(name: &str) -> Result<Kind, String> {
     parse_kind(name, &KINDS)
 }

@@ -1,4 +1,4 @@
-//! `fit-cloth simulate`: a scene of a material, in motion or at rest.
+//! `fit-cloth simulate`: simulates a scene with a material, in motion or at rest.
 
 use crate::failure::Failure;
 use crate::options::{CompressionChoice, refuse_within};
@@ -79,10 +79,10 @@ impl From<FormatChoice> for ShapeFormat {
     }
 }
 
-/// Simulates.
+/// Simulates a scene.
 ///
 /// # Errors
-/// Bad input, or an output folder that is no former result; what the operating system refuses.
+/// Bad input; an output folder that is not a previous result; I/O errors.
 pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let folder = options.output_folder();
     check_output(&folder)?;
@@ -95,7 +95,7 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
         Some(choice) => material.with_compression(choice.into())?,
         None => material,
     };
-    // Only those that the scene takes.
+    // Only the components that the scene uses.
     let parts = scene.components(&material)?;
     let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
     let curves: Curves = curves.collect();
@@ -129,7 +129,7 @@ impl SimulateOptions {
             to_rest(scene, material, &mut |step| bar.at(step, None))
         } else {
             let duration = self.duration.or(scene.duration).ok_or_else(|| {
-                scene.invalid("duration_s", "nothing", "a duration here or by --duration, or --rest")
+                scene.invalid("duration_s", "nothing", "duration_s in the scene, --duration or --rest")
             })?;
             in_motion(scene, material, duration, &mut |step, steps| bar.at(step, Some(steps)))
         };

@@ -1,4 +1,4 @@
-//! `fit-cloth study`: error against run time, and what each part that a scene can leave out saves and costs.
+//! `fit-cloth study`: error against run time, and the savings and costs of each optional part of a scene.
 
 use crate::failure::Failure;
 use crate::options::{SetFlags, TopicChoice, use_threads};
@@ -51,10 +51,10 @@ pub struct StudyOptions {
     pub threads: Option<usize>,
 }
 
-/// Runs a study. A run that fails is a row that says so, and no failure of the study.
+/// Runs a study. A run that fails is recorded in its row and does not stop the study.
 ///
 /// # Errors
-/// Bad input, or an output folder that is no former result; what the operating system refuses.
+/// Bad input; an output folder that is not a previous result; I/O errors.
 pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let extent = if options.quick { Extent::quick() } else { Extent::full() };
     let published_nodes = match options.as_published {
@@ -78,7 +78,7 @@ pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) ->
 }
 
 impl StudyOptions {
-    /// What is studied, and the folder to write into, claimed.
+    /// The subject of the study and the claimed output folder.
     fn subject(&self, extent: &Extent) -> Result<(Subject, Output), Failure> {
         if let Some(set) = &self.set {
             let flags =

@@ -1,4 +1,4 @@
-//! `fit-cloth validate`: fitted curves on motions and samples that the fit did not see.
+//! `fit-cloth validate`: tests fitted curves on motions and samples that the fit did not use.
 
 use super::kinds::{has_any, nothing};
 use crate::failure::{Failure, with_option};
@@ -51,11 +51,10 @@ pub struct ValidateOptions {
     pub all: bool,
 }
 
-/// Predicts and compares.
+/// Simulates the tests with the given curves and compares them with the measurements.
 ///
 /// # Errors
-/// Bad input, a set without the tests asked for, or an output folder that is no former result; what the operating system
-/// refuses.
+/// Bad input; a set without the requested tests; an output folder that is not a previous result; I/O errors.
 pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (set, out) = options.on.open("-validation")?;
     refuse_within("--material", &options.material, out.path())?;
@@ -66,8 +65,8 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
         return Err(with_option(nothing(&options.on.set, &set, &kinds), "--kinds, --all").into());
     }
     if options.kinds.is_empty() && !options.all && kinds.len() == Kind::ALL.len() {
-        let taken = "all tests of the set are taken, since it has neither complex-shear nor corner-pull, which no fit uses: curves \
-                     that were fitted to them are not put to the test by them";
+        let taken = "using all tests of the set, since it has neither complex-shear nor corner-pull: for curves fitted \
+                     to these tests this is no validation";
         warn(telling, taken);
     }
     warn_of_defects(telling, &options.material.display().to_string(), &check_material(&material)?);
@@ -93,18 +92,18 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     Ok(if validation.lost().is_empty() { Outcome::Done } else { Outcome::NotConverged })
 }
 
-/// The observed curves.
+/// The observed curves of the material.
 fn curves(options: &ValidateOptions, material: &MaterialFile) -> Result<Curves, Failure> {
     let curves = material.curves()?;
     if curves.components().next().is_some() {
         return Ok(curves);
     }
-    let (found, expected) = ("no observed curve", "one at least (another --material)");
+    let (found, expected) = ("no observed curve", "at least one (another --material)");
     Err(Error::input(&options.material, None, "curves", found, expected).into())
 }
 
 impl ValidateOptions {
-    /// The tests to try the curves on.
+    /// Kinds of test to simulate.
     fn kinds_of(&self, set: &MeasurementSet) -> Vec<Kind> {
         let has = |kind: &Kind| set.sequences.iter().any(|sequence| sequence.kind == *kind);
         if !self.kinds.is_empty() {
@@ -116,7 +115,7 @@ impl ValidateOptions {
         }
     }
 
-    /// The model of the fit that the curves come from; the grid belongs to the specimen.
+    /// The settings of the fit that the curves come from, except the grid, which depends on the specimen.
     fn settings(&self, material: &MaterialFile) -> Settings {
         let defaults = Settings::default();
         Settings {

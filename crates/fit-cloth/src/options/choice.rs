@@ -1,4 +1,4 @@
-//! Choices by name, and the library's types.
+//! Named choices on the command line, converted to the library's types.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -35,7 +35,7 @@ impl ValueEnum for ModelChoice {
 /// One model, or all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelsChoice {
-    /// One.
+    /// One model.
     One(ModelChoice),
     /// All in turn.
     All,
@@ -166,7 +166,7 @@ pub enum TopicChoice {
     Fits,
     /// Curve error against noise
     Noise,
-    /// What each part saves and costs; parts of fits only with topic fits
+    /// Savings and costs of each part; parts of fits only with topic fits
     Ablation,
 }
 

@@ -1,4 +1,4 @@
-//! The flags of the commands that fit.
+//! Flags of the commands that fit or read a measurement set.
 
 use super::choice::{CompressionChoice, ConstraintChoice, ModelChoice, ModelsChoice, VariantChoice};
 use crate::failure::Failure;
@@ -12,13 +12,13 @@ use cloth_fit::stage::Settings;
 use cloth_sim::material::Model;
 use std::path::{Path, PathBuf};
 
-/// Flags of every command on a measurement set.
+/// Flags of every command that reads a measurement set.
 #[derive(Debug, Clone, Args)]
 pub struct SetFlags {
     /// Folder of the measurement set
     pub set: PathBuf,
-    /// Output folder; a previous result there is replaced [default: out/ and the set's name; compare and validate append
-    /// -compare and -validation]
+    /// Output folder; a previous result there is replaced [default: out/ and the set's name; compare and validate
+    /// append -compare and -validation]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Nodes of the simulation grid, columns x rows [default: as many cells as 25x25 nodes have, near square]
@@ -29,7 +29,7 @@ pub struct SetFlags {
     pub threads: Option<usize>,
 }
 
-/// Flags of the curves' fit.
+/// Flags that control how curves are fitted.
 #[derive(Debug, Clone, Args)]
 pub struct CurveFlags {
     /// Maximum number of control points of a curve
@@ -46,7 +46,7 @@ pub struct CurveFlags {
     pub robust: Option<f64>,
 }
 
-/// Flags of every fit.
+/// Flags of the fit commands.
 #[derive(Debug, Clone, Args)]
 pub struct FitFlags {
     /// Set, output folder, grid, threads.
@@ -78,7 +78,7 @@ pub struct FitFlags {
 impl SetFlags {
     /// Reads the set and claims the folder to write into.
     ///
-    /// * `suffix` — of that folder, if none was named: so that one command does not replace what another wrote
+    /// * `suffix` — appended to the default folder name, so that one command does not replace another's result
     ///
     /// # Errors
     /// A bad set; an output folder that is no previous result or that another run writes; a thread count outside 1 to
@@ -101,7 +101,7 @@ impl SetFlags {
         })
     }
 
-    /// A result in the place of its own measurements, or among them, would destroy the set.
+    /// Refuses an output folder that is the measurement set or contains it: the result would destroy the set.
     fn refuse_inside(&self, folder: &Path) -> Result<(), Failure> {
         if is_inside(folder, &self.set) {
             let (found, expected) = (folder.display().to_string(), "a folder outside the measurement set");
@@ -147,10 +147,10 @@ pub(crate) fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     pool.map_err(|error| refused(error.to_string()).into())
 }
 
-/// Refuses to read a file that the result would replace.
+/// Refuses an input file that the result would replace.
 ///
 /// # Errors
-/// A file in the folder.
+/// A file inside the output folder.
 pub(crate) fn refuse_within(flag: &str, path: &Path, folder: &Path) -> Result<(), Failure> {
     if is_inside(path, folder) {
         let found = format!("a file in {}, which will be replaced", folder.display());
@@ -159,12 +159,12 @@ pub(crate) fn refuse_within(flag: &str, path: &Path, folder: &Path) -> Result<()
     Ok(())
 }
 
-/// True if a path leads into a folder, or is that folder; links are followed where they exist.
+/// True if `path` is `folder` or inside it; existing links are followed.
 fn is_inside(path: &Path, folder: &Path) -> bool {
     matches!((resolved(path), resolved(folder)), (Some(path), Some(folder)) if path.starts_with(&folder))
 }
 
-/// A path without links and dots, as far as it exists.
+/// Resolves links and dots in the existing part of a path.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(path).ok()?;
     path.ancestors().find_map(|ancestor| {
@@ -173,20 +173,20 @@ fn resolved(path: &Path) -> Option<PathBuf> {
     })
 }
 
-/// One of some kinds of test by its name.
+/// Parses the name of a kind of test, out of those allowed.
 ///
 /// # Errors
-/// Another name.
+/// Any other name.
 pub fn parse_kind(name: &str, among: &[Kind]) -> Result<Kind, String> {
     let names = || among.iter().map(|kind| kind.to_string()).collect::<Vec<_>>().join(", ");
     let found = among.iter().find(|kind| kind.to_string() == name);
     found.copied().ok_or_else(|| format!("{name}: expected one of {}", names()))
 }
 
-/// Columns and rows, as in 25x25.
+/// Parses columns and rows, as in 25x25.
 ///
 /// # Errors
-/// Text of another form.
+/// Text of any other form.
 pub fn parse_nodes(text: &str) -> Result<[usize; 2], String> {
     let sides = text.split_once('x').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
     sides.ok_or_else(|| format!("{text}: expected columns and rows, as in 25x25"))

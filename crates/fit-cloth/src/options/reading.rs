@@ -1,15 +1,15 @@
-//! The flags of the commands that read a curve.
+//! Flags of the commands that read a curve.
 
 use super::choice::{ComponentChoice, ModelChoice};
 use clap::Args;
 use cloth_sim::material::{Component, Model};
 
-/// How a table of one curve is read.
+/// Flags that say how a curve is read.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading")]
 pub struct Reading {
-    /// Component of the curve: selects one of a material.json [check: all]; needed for a table only if it has rows below
-    /// zero, which stretch and shear read differently
+    /// Component of the curve: selects one of a material.json [check: all]; needed for a table only if it has rows
+    /// below zero, which stretch and shear read differently
     #[arg(long, value_enum)]
     pub component: Option<ComponentChoice>,
     /// Model whose strain measure the table uses [default: by its columns, else stvk]

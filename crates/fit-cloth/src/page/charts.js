@@ -1,8 +1,8 @@
-// uPlot in this page's dress.
+// uPlot with the styles of this page.
 const drawn = new Map();
 let paper = false;
 
-// What a chart's place leaves for it; on A4, while the layout is still that of the screen.
+// Size available to a chart; for print on A4, where the layout is still that of the screen.
 const room = (place) => (paper ? 660 : Math.max(240, place.clientWidth - 16));
 
 function axis(label, more) {
@@ -12,7 +12,7 @@ function axis(label, more) {
 
 const NOTHING = "nothing was measured here";
 
-// why: what stands in the chart's place
+// why: text shown instead of the chart
 function clear(id, why = "") {
   drawn.get(id)?.destroy();
   drawn.delete(id);
@@ -21,7 +21,7 @@ function clear(id, why = "") {
   place.setAttribute("aria-label", why);
 }
 
-// tables: each [x, y, …]; series: one entry a column of y, in order.
+// tables: each [x, y, …]; series: one entry per column of y, in order.
 function chart(id, tables, series, { x, y, height = 330, legend = true, scales = {}, bands = [], hooks = {}, sync = null, whole = false }) {
   clear(id, tables.length ? "" : NOTHING);
   if (!tables.length) return;
@@ -42,7 +42,7 @@ function chart(id, tables, series, { x, y, height = 330, legend = true, scales =
   place.setAttribute("aria-label", `${y} over ${x}: ${series.filter((s) => s.class !== "quiet").map((s) => s.label).join(", ")}`);
 }
 
-// ← → move the cursor, + and − zoom about it, 0 shows all.
+// ← → move the cursor, + and − zoom around it, 0 shows everything.
 function chartKey(event) {
   const chart = drawn.get(event.currentTarget.id);
   if (!chart) return;

@@ -1,4 +1,4 @@
-// One palette that colour-blind people can tell apart: lines after Okabe and Ito, surfaces by viridis.
+// Colour-blind-safe palette: lines after Okabe and Ito, surfaces in viridis.
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const rgb = (name) => [1, 3, 5].map((i) => parseInt(css(name).slice(i, i + 2), 16) / 255);
 
@@ -7,7 +7,7 @@ const MODELS = kinds("model"), VARIANTS = kinds("variant");
 const DASHES = [[], [12, 6], [3, 4], [12, 4, 3, 4]];
 const LINES = ["solid", "dashed", "dotted", "double"];
 
-// A model has a colour, a variant a way of dashing.
+// Colour by model, dash pattern by variant.
 const colourOf = (fit) => css(`--c${MODELS.indexOf(fit.model) % 3}`);
 const dashOf = (fit) => DASHES[VARIANTS.indexOf(fit.variant) % 4];
 const labelOf = (fit) => (VARIANTS.length > 1 ? `${fit.model}, ${fit.variant}` : fit.model);
@@ -23,7 +23,7 @@ function viridis(share) {
 
 const gradient = `linear-gradient(90deg, ${VIRIDIS.map((c) => `rgb(${c.map((v) => Math.round(255 * v))})`).join(", ")})`;
 
-// Four significant digits; a dash where there is no number.
+// Four significant digits; a dash for no number.
 function short(value) {
   if (value == null || Number.isNaN(value)) return "–";
   if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e5)) return value.toExponential(3);

@@ -1,4 +1,4 @@
-//! A fit's curves, and the course that each took, as the page's charts take them.
+//! A fit's curves and their convergence, as data for the page's charts.
 
 use crate::shown::curve_labels;
 use crate::text::{self, NO_KNOWLEDGE};
@@ -7,7 +7,7 @@ use cloth_fit::stage::report::{Histogram, Sample, StageReport};
 use cloth_sim::material::Component;
 use serde::{Deserialize, Serialize};
 
-/// A component's curve; one that was not observed has labels and a reason only.
+/// A component's curve; an unobserved one has only labels and a reason.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Curve {
@@ -16,19 +16,19 @@ pub(super) struct Curve {
     x_label: String,
     y_label: String,
     stiffness_label: String,
-    /// 201 rows: strain, stress and, where it is known, the band's two sides.
+    /// 201 rows: strain, stress and, where known, both sides of the band.
     samples: Vec<Vec<f64>>,
     points: Vec<Point>,
     visited: [f64; 2],
     histogram: Histogram,
-    /// Of the control values.
+    /// Correlation matrix of the control values.
     correlations: Vec<Vec<Option<f64>>>,
-    /// A sentence; then what was used and how it went.
+    /// The verdict as a sentence; `course` holds the basis and course of the stage, line by line.
     verdict: String,
     course: Vec<String>,
 }
 
-/// A control point as a row of the curve file.
+/// A control point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Point {
@@ -39,7 +39,7 @@ struct Point {
     stress: f64,
 }
 
-/// The residual after every step of a curve's stages, over all their numbers of control points, N or m.
+/// The residual after every step of a curve's stages, over all numbers of control points, N or m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Course {
@@ -47,7 +47,7 @@ pub(super) struct Course {
     rms: Vec<f64>,
 }
 
-/// All components, observed or not.
+/// The curves of all components, observed or not.
 pub(super) fn curves(report: &FitReport) -> Vec<Curve> {
     Component::ALL.into_iter().map(|component| curve(report, component)).collect()
 }
@@ -70,7 +70,7 @@ fn curve(report: &FitReport, component: Component) -> Curve {
         let value = found.curve.stiffnesses()[i];
         Point {
             strain: point.strain,
-            // Of stretch and shear the control value as it stands in material.json, to the last bit.
+            // For stretch and shear, exactly the control value in material.json.
             stiffness: if component.is_bending() { point.stiffness } else { value },
             share: found.half_bands[i].map(|half| half / value).filter(|share| *share < NO_KNOWLEDGE),
             stress: point.stress,
@@ -90,7 +90,7 @@ fn curve(report: &FitReport, component: Component) -> Curve {
     }
 }
 
-/// Every curve's course, over all passes.
+/// Convergence of every curve, over all passes.
 pub(super) fn courses(report: &FitReport) -> Vec<Course> {
     let course = |stage: &StageReport| Course { name: stage.name(), rms: report.course(stage) };
     report.last_stages().map(course).collect()

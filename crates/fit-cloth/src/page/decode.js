@@ -1,7 +1,7 @@
-// What the page shows. Numbers are those of material.json, residuals.csv and forces.csv.
+// Decodes the page's data. Numbers are those of material.json, residuals.csv and forces.csv.
 const page = JSON.parse(document.getElementById("data").textContent);
 
-// Coordinates are whole numbers of 16 bits, ±32767 of the sequence's reach about its middle; the least of all is "not seen".
+// Coordinates are 16-bit integers, ±32767 for the sequence's reach around its middle; the minimum means "not observed".
 const NOT_SEEN = -32768;
 
 function bytes(text) {
@@ -17,7 +17,7 @@ function places(text, { middle, reach }) {
   return Float32Array.from(packed, (value, i) => (value === NOT_SEEN ? NaN : middle[i % 3] + (reach * value) / 32767));
 }
 
-// The sequence with its mesh and frames as arrays, made when it is first looked at.
+// The sequence with its mesh and frames as arrays, decoded on first use.
 function unpacked(sequence) {
   if (!sequence.mesh) {
     const triangles = new Uint32Array(bytes(sequence.triangles));
@@ -30,7 +30,7 @@ function unpacked(sequence) {
   return sequence;
 }
 
-// Pairs of nodes; every edge once.
+// Edges as pairs of nodes, each once.
 function edges(triangles) {
   const seen = new Set(), pairs = [];
   for (let t = 0; t < triangles.length; t++) {
@@ -41,7 +41,7 @@ function edges(triangles) {
   return pairs;
 }
 
-// The greater eigenvalue of E = (FᵀF − I)/2 of each triangle; nodes take the mean of their triangles.
+// Larger eigenvalue of E = (FᵀF − I)/2 in each triangle, averaged over the triangles at each node.
 function strains({ triangles, material }, x) {
   const sums = new Float32Array(x.length / 3), counts = new Float32Array(x.length / 3);
   for (let t = 0; t < triangles.length; t += 3) {

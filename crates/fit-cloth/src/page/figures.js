@@ -1,10 +1,10 @@
-// What each chart shows.
+// Content of each chart.
 
-// A curve of several fits with bands and control points; beneath it the first one's histogram.
+// A component's curve in several fits, with bands and control points, and the first fit's histogram below.
 function drawCurve(component, fits) {
   const tables = [], series = [], bands = [];
   const curves = fits.map((fit) => [fit, fit.curves.find((c) => c.component === component)]).filter(([, curve]) => curve.observed);
-  // The first one comes last, above the others.
+  // The first fit is drawn last, on top of the others.
   for (const [fit, curve] of [...curves].reverse()) {
     const stroke = colourOf(fit), column = (i) => curve.samples.map((sample) => sample[i] ?? null);
     const banded = curve.samples.some((sample) => sample.length === 4);
@@ -24,7 +24,7 @@ function drawCurve(component, fits) {
   const ends = (values) => [Math.min(...values), Math.max(...values)];
   const points = curves.flatMap(([, curve]) => curve.points), samples = curves.flatMap(([, curve]) => curve.samples);
   const [left, right] = ends([0, ...points.map((p) => p.strain), ...samples.map((sample) => sample[0])]);
-  // A band that is much wider than the curve is high does not flatten it: it is cut off.
+  // A band much wider than the curve is high is cut off, so that it does not flatten the curve.
   const [bottom, top] = ends([0, ...points.map((p) => p.stress), ...samples.map((sample) => sample[1])]);
   const [below, above] = ends([bottom, top, ...samples.flatMap((sample) => sample.slice(2))]);
   const height = top - bottom || 1;
@@ -32,7 +32,7 @@ function drawCurve(component, fits) {
   const across = (_, low, high) => (low == null || low === high ? [left, right] : [low, high]);
   const upwards = (_, low, high) => (low == null ? extent : [Math.max(low, extent[0]), Math.min(high + 0.04 * (high - low), extent[1])]);
   const scales = { x: { range: across }, y: { range: upwards } };
-  // What the measurement did not visit of the curve that is looked at, on either side.
+  // Parts of the selected curve that the measurement did not visit, on either side.
   const shade = (u) => {
     if (!own.observed) return;
     const [first, last] = ends(own.points.map((p) => p.strain));
@@ -46,14 +46,14 @@ function drawCurve(component, fits) {
     }
   };
   const hooks = { drawClear: [shade] };
-  // Models differ in their strains: a number on a shared axis is each one's own.
+  // Models differ in their strain measure: on a shared axis, each curve is over its own.
   const label = (axis, shared) => (new Set(curves.map(([, curve]) => curve[axis])).size > 1 ? shared : own[axis]);
   const x = label("x_label", "strain, of each model [–]"), y = label("y_label", "stress, of each model [N/m]");
   chart("curve", tables, series, { x, y, bands, scales, hooks, sync: "curve" });
   if (!own.observed) { clear("histogram"); return; }
   const { range: [from, to], shares } = own.histogram, width = (to - from) / shares.length;
   const middles = shares.map((_, i) => from + (i + 0.5) * width);
-  // The same extent as above: both ends are without a column.
+  // Same extent as the chart above: no column at either end.
   const xs = [[left, null], ...middles.map((x, i) => [x, 100 * shares[i]]), [right, null]].filter(([x], i, all) => i === 0 || x > all[i - 1][0]);
   const bars = uPlot.paths.bars({ size: [1, 40], align: 0 });
   chart("histogram", [[xs.map(([x]) => x), xs.map(([, share]) => share)]],
@@ -61,8 +61,8 @@ function drawCurve(component, fits) {
     { x: own.x_label, y: "sheets [%]", height: 110, legend: false, sync: "curve", hooks });
 }
 
-// Frames that follow one another with the force growing, or shrinking; each run begins where the last one ended. A chart is
-// over rising x: no line of it can go there and back.
+// Runs of successive frames with growing or shrinking force; each begins where the last one ended. A chart needs
+// ascending x, so one line cannot go back and forth.
 function runs(forces) {
   const found = [];
   for (const force of forces) {
@@ -74,7 +74,7 @@ function runs(forces) {
   return found.map(({ phase, rows }) => ({ phase, rows: rows.filter((row, i) => i === 0 || row.extension > rows[i - 1].extension) }));
 }
 
-// Forces over extension of the clip that is pulled most, or the profiles of a sheet off a table.
+// Pulling force over extension, or the profiles of a sheet pushed off a table.
 function drawAnswer(name, fits) {
   const found = fits.map((fit) => [fit, fit.sequences.find((s) => s.name === name)]).filter(([, sequence]) => sequence);
   const title = document.getElementById("answer-title");
@@ -113,7 +113,7 @@ function shape(name, attributes, text) {
   return made;
 }
 
-// Steps of 1, 2 or 5 between two numbers, about so many.
+// Ticks at steps of 1, 2 or 5 × 10ⁿ between two numbers, about as many as requested.
 function steps(low, high, about) {
   const rough = (high - low) / about, decade = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((n) => n * decade).find((s) => s >= rough);
@@ -122,9 +122,10 @@ function steps(low, high, about) {
   return marks;
 }
 
-// Both axes to one scale, in mm: a chart over x cannot show a sheet that hangs straight down.
+// Both axes to the same scale, in mm. Drawn as SVG: uPlot needs ascending x and cannot show a sheet that hangs straight
+// down.
 //
-// available: width in pixels; nothing where no node was seen
+// available: width in pixels; returns nothing if no node was observed
 function profiles(found, available) {
   const mm = (points) => points.filter((p) => p[0] != null).map((p) => p.map((c) => 1e3 * c));
   const lines = [...found].reverse().flatMap(([fit, sequence]) => sequence.profiles.map((p) => [mm(p.simulated), colourOf(fit), 2.6, dashOf(fit)]));

@@ -1,4 +1,4 @@
-//! What the page shows of one fit.
+//! One fit on the page.
 
 use super::curves::{Course, Curve, courses, curves};
 use super::sequences::{Frames, Sequence, sequences};
@@ -12,29 +12,29 @@ use cloth_fit::material::file::ResidualEntry;
 use cloth_fit::stage::report::SequenceReport;
 use serde::{Deserialize, Serialize};
 
-/// All of it.
+/// Data of one fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fit {
     model: String,
     variant: String,
-    /// The verdict is green.
+    /// True if the verdict is green.
     sound: bool,
-    /// How far to trust it, and why not farther.
+    /// The verdict and its reasons.
     #[serde(default)]
     trust: String,
-    /// In words: what was fitted to what, how it went, how good, how sure, what to measure next.
+    /// Sentences: subject of the fit, state, residuals, uncertainty, next measurement.
     about: String,
     state: String,
     good: String,
     sure: String,
     next: String,
-    /// What failed.
+    /// Failed stages.
     failures: Vec<String>,
     /// Contradictions within the measurements.
     #[serde(default)]
     notices: Vec<String>,
-    /// All curves at a glance, in cells.
+    /// Summary of all curves, as cells.
     summary: Vec<[String; 6]>,
     residuals: Vec<Residual>,
     curves: Vec<Curve>,
@@ -42,12 +42,12 @@ pub struct Fit {
     courses: Vec<Course>,
 }
 
-/// How a sequence was met: the numbers of `residuals.csv` and `material.json`.
+/// Residuals of a sequence, as in `residuals.csv` and `material.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Residual {
     sequence: String,
-    /// No fit saw a sequence that was predicted.
+    /// True if the sequence was predicted, not fitted.
     predicted: bool,
     frames: usize,
     frames_left_out: usize,
@@ -60,7 +60,7 @@ struct Residual {
 }
 
 impl Fit {
-    /// Collects what a fit found, and what it predicted of sequences that it did not see.
+    /// Collects the results of a fit and its predictions of sequences that it did not use.
     pub fn new(
         set: &MeasurementSet,
         report: &FitReport,
@@ -86,7 +86,7 @@ impl Fit {
             about: format!(
                 "{} of {} g/m², fitted as {}, {}, to {} frames of {} tests.",
                 set.fabric.name,
-                // Grams have no more digits than the kilograms that were given.
+                // Without trailing zeros: no more digits than the given kilograms.
                 format!("{:.3}", 1e3 * set.fabric.areal_density_kg_m2)
                     .trim_end_matches('0')
                     .trim_end_matches('.'),

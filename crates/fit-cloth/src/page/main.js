@@ -2,7 +2,7 @@ const byId = (id) => document.getElementById(id);
 const viewer = new Viewer(byId("view"));
 const best = page.ranking?.rows.map(([model, variant]) => page.fits.find((each) => each.model === model && each.variant === variant)).find(Boolean);
 let fit = best ?? page.fits[0], component = null, sequence = null, frame = 0, timer = null;
-// Of many fits those of one variant are compared.
+// With many fits, those of one variant are compared.
 const beside = new Set(page.fits.filter((other) => other.variant === fit.variant));
 
 function element(name, text, attributes = {}) {
@@ -12,7 +12,7 @@ function element(name, text, attributes = {}) {
   return made;
 }
 
-// One or several of some names, as buttons; hidden where there is nothing to choose.
+// Buttons to choose one or several names; hidden if there is no choice.
 function choice(id, names, pressed, choose, dress = () => ({})) {
   const place = byId(id), focus = [...place.querySelectorAll("button")].indexOf(document.activeElement);
   place.hidden = names.length < 2;
@@ -21,11 +21,11 @@ function choice(id, names, pressed, choose, dress = () => ({})) {
     button.addEventListener("click", () => choose(name));
     return button;
   }));
-  // A choice made with the keyboard stays where it was made.
+  // Keep the focus after a choice by keyboard.
   place.querySelectorAll("button")[focus]?.focus();
 }
 
-// texts: columns that are no numbers; each: what to do with a cell.
+// texts: columns that hold text; each: callback for a cell.
 function table(id, header, rows, texts = [0], each = () => {}) {
   const made = (cells, kind, row) => {
     const line = element("tr");
@@ -41,7 +41,7 @@ function table(id, header, rows, texts = [0], each = () => {}) {
 
 const list = (id, lines) => byId(id).replaceChildren(...lines.map((line) => element("li", line)));
 
-// The fit that is looked at, then those beside it.
+// The selected fit, then those compared with it.
 const shown = () => [fit, ...page.fits.filter((other) => other !== fit && beside.has(other))];
 
 function showFit(chosen) {
@@ -110,7 +110,7 @@ function showSequence(name) {
   sequence = next;
   byId("frames-section").hidden = !sequence?.frames.length;
   if (!sequence?.frames.length) play(false);
-  if (!sequence) { clear("answer", "no test took part"); return; }
+  if (!sequence) { clear("answer", "no test was used"); return; }
   byId("sequence").value = name;
   drawAnswer(name, shown());
   if (!sequence.frames.length) return;
@@ -122,13 +122,13 @@ function showSequence(name) {
   for (const option of byId("colour").options) option.disabled = !seen && option.value === "residual";
   if (!seen) byId("shapes").value = "simulated";
   if (!seen && byId("colour").value === "residual") byId("colour").value = "strain";
-  // Of a test that is looked at for the first time, the frame that went farthest.
+  // For a newly selected test, the frame of largest extension.
   const far = (index) => Math.abs(sequence.frames[index].extension);
   const farthest = sequence.frames.reduce((best, _, index) => (far(index) > far(best) ? index : best), 0);
   showFrame(other ? farthest : Math.min(frame, sequence.frames.length - 1), other);
 }
 
-// afresh: the sheet is looked at from where it was at first.
+// afresh: reset the view.
 function showFrame(index, afresh = false) {
   frame = index;
   byId("frame").value = index;
@@ -153,7 +153,7 @@ function showFrame(index, afresh = false) {
   }
   const size = (0.5 * sequence.reach) / (sequence.largest_force || 1);
   const arrow = (at, force, name, width, side, alpha) => ({ from: at, to: at.map((c, i) => c + size * force[i]), colour: rgb(name), width: width * sequence.reach, side, alpha });
-  // The measured ones first: they are seen through the others, which they all but meet.
+  // Measured arrows first: they show through the simulated ones, which nearly coincide with them.
   const apart = which === "beside" ? 1 : 0;
   const arrows = [
     ...(which === "simulated" ? [] : now.arrows.map(({ at, measured }) => arrow(at, measured, "--ink", 0.006, -apart, 1))),
@@ -206,7 +206,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const preferred = () => (dark.matches ? "dark" : "light");
 dark.addEventListener("change", () => dress(preferred()));
 byId("theme").addEventListener("click", () => dress(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-// Paper is white, and narrow.
+// Print: light colours and a narrow page.
 let before = null;
 addEventListener("beforeprint", () => { before = document.documentElement.dataset.theme; paper = true; dress("light"); });
 addEventListener("afterprint", () => { paper = false; dress(before); });

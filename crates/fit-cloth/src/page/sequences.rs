@@ -1,4 +1,4 @@
-//! A fit's sequences frame by frame: shapes, forces on the clips, profiles.
+//! A fit's sequences, frame by frame: shapes, clip forces, profiles.
 
 use crate::shown::{ClipForce, Profile, clip_forces, extension, profiles, pulled_rows, vector};
 use base64::{Engine, engine::general_purpose::STANDARD};
@@ -8,41 +8,41 @@ use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// A coordinate that was not seen.
+/// Marks a coordinate that was not observed.
 const NOT_SEEN: i16 = i16::MIN;
 
-/// Whether the shapes of all frames are part of a page. Those of a dozen fits would make it too large to send.
+/// Inclusion of the frames' shapes in the page. The shapes of a dozen fits would make it too large to send.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Frames {
-    /// For the viewer.
+    /// Shapes are included, for the viewer.
     Shown,
     /// Curves, forces and profiles only.
     LeftOut,
 }
 
-/// A sequence; arrays are little-endian, in base64.
+/// A sequence; arrays are little-endian in base64.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Sequence {
     name: String,
-    /// What the extension is.
+    /// Name and unit of the extension.
     extension: String,
-    /// Against gravity, or across the sheet.
+    /// Direction against gravity, or normal to the sheet without gravity.
     up: [f64; 3],
-    /// Coordinates are middle + reach × value / 32767, m.
+    /// A coordinate is middle + reach × value / 32767, m.
     middle: [f64; 3],
     reach: f64,
-    /// u32, three nodes each.
+    /// u32, three node indices per triangle.
     triangles: String,
-    /// f32, two coordinates a node, m.
+    /// f32, two material coordinates per node, m.
     material: String,
     multi_stable: Vec<usize>,
-    /// What colours and arrows are measured by: m, –, N.
+    /// Maxima that scale colours and arrows: m, –, N.
     largest_distance: f64,
     largest_strain: f64,
     largest_force: f64,
     frames: Vec<Frame>,
-    /// Of the clip that is pulled most.
+    /// The pulling force: see [`pulled_rows`].
     forces: Vec<Force>,
     profiles: Vec<Profile>,
 }
@@ -52,7 +52,7 @@ pub(super) struct Sequence {
 struct Frame {
     frame: usize,
     extension: f64,
-    /// i16, three coordinates a node.
+    /// i16, three coordinates per node.
     simulated: String,
     measured: Option<String>,
     arrows: Vec<ClipForce>,
@@ -68,7 +68,7 @@ struct Force {
     simulated: f64,
 }
 
-/// Those that took part.
+/// The sequences used by a fit.
 pub(super) fn sequences(set: &MeasurementSet, found: &[&SequenceReport], frames: Frames) -> Vec<Sequence> {
     let measured = |name: &str| set.sequences.iter().find(|sequence| sequence.name == name);
     found.iter().filter_map(|found| Some(sequence(measured(&found.name)?, found, frames))).collect()
@@ -100,7 +100,7 @@ fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) 
         measured: row.measured.abs(),
         simulated: row.simulated.abs(),
     };
-    // A mesh without a frame is of no use.
+    // The mesh is omitted if there are no frames.
     let encoded = |bytes: &mut dyn Iterator<Item = u8>| match frames.is_empty() {
         true => String::new(),
         false => STANDARD.encode(bytes.collect::<Vec<u8>>()),
@@ -125,14 +125,14 @@ fn sequence(measured: &frame::Sequence, found: &SequenceReport, frames: Frames) 
     }
 }
 
-/// The middle of all that is seen or simulated, and how far it reaches from there, m.
+/// Centre of all observed and simulated nodes, and the largest half extent along an axis, m.
 fn extent(frames: &[FrameShape]) -> ([f64; 3], f64) {
     if frames.is_empty() {
         return ([0.0; 3], 1.0);
     }
     let places = || frames.iter().flat_map(|frame| frame.simulated.iter().chain(&frame.measured));
     let bound = |axis: usize, start: f32, rule: fn(f32, f32) -> f32| {
-        // NaN loses against any number.
+        // `min` and `max` ignore NaN.
         f64::from(places().map(|place| place[axis]).fold(start, rule))
     };
     let low = [0, 1, 2].map(|axis| bound(axis, f32::INFINITY, f32::min));
@@ -151,14 +151,14 @@ fn packed(places: &[Place], middle: [f64; 3], reach: f64) -> String {
     STANDARD.encode(bytes.flatten().collect::<Vec<u8>>())
 }
 
-/// The largest distance of a node seen from where it is simulated, m.
+/// Largest distance between the observed and simulated position of a node, m.
 fn largest_distance(frames: &[FrameShape]) -> f64 {
     let pairs = frames.iter().flat_map(|frame| frame.simulated.iter().zip(&frame.measured));
     let distance = |(a, b): (&Place, &Place)| (vector(*a) - vector(*b)).norm();
     pairs.map(distance).fold(0.0, f64::max)
 }
 
-/// The largest eigenvalue of any triangle's Green strain.
+/// Largest eigenvalue of the Green strain over all triangles and frames.
 fn largest_strain(shapes: &Shapes, frames: &[FrameShape]) -> f64 {
     let strain = |frame: &FrameShape, nodes: &[usize; 3]| {
         let [a, b, c] = nodes.map(|node| vector(frame.simulated[node]));

@@ -1,4 +1,4 @@
-// Sheets and arrows in space, by WebGL, without perspective.
+// 3D view of sheets and arrows in WebGL, without perspective.
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a, b) => a.map((c, i) => c - b[i]);
@@ -9,7 +9,7 @@ const VERTEX = `
   uniform mat3 view; uniform vec3 middle; uniform vec3 scale;
   varying vec3 n, c;
   void main() { n = view * normal; c = colour; gl_Position = vec4(view * (place - middle) * scale, 1.0); }`;
-// What has no normal, a line or an arrow, has no shade either.
+// Lines and arrows have no normal and are not shaded.
 const FRAGMENT = `
   precision mediump float; uniform float alpha; varying vec3 n, c;
   void main() { float light = length(n) > 0.5 ? 0.45 + 0.55 * abs(normalize(n).z) : 1.0; gl_FragColor = vec4(c * light * alpha, alpha); }`;
@@ -32,7 +32,7 @@ class Viewer {
     gl.enable(gl.SCISSOR_TEST);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    // Lines of one sheet stay visible on the surface of the other.
+    // Keeps the lines of one sheet visible on the surface of the other.
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 2);
     this.at = Object.fromEntries(["place", "normal", "colour"].map((name) => [name, gl.getAttribLocation(program, name)]));
@@ -73,14 +73,14 @@ class Viewer {
     this.draw();
   }
 
-  // Shows all frames of the sequence, from where they are seen well.
+  // Chooses a view that shows all frames of the sequence well.
   startOver() {
     if (!this.sequence) return;
     Object.assign(this, { turn: 0.5, zoom: 1 });
     this.up = unit(this.sequence.up);
     this.rise = 0;
     const [low, high] = this.extent();
-    // A sheet that lies flat is seen from above.
+    // A flat sheet is viewed from above.
     this.rise = high[1] - low[1] < 0.3 * (high[0] - low[0]) ? 1.0 : 0.35;
     const [from, to] = this.extent();
     const rows = this.view(), middle = from.map((c, i) => (c + to[i]) / 2);
@@ -89,7 +89,7 @@ class Viewer {
     this.draw();
   }
 
-  // Of all frames, as they are seen: right, up, towards the eye.
+  // Extent of all frames in view axes: right, up, towards the eye.
   extent() {
     const rows = this.view(), low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     for (const { simulated, measured } of this.sequence.frames) {
@@ -107,8 +107,8 @@ class Viewer {
     return [low, high];
   }
 
-  // sheets: { x, colours (a node), side (−1 left half, 1 right half, 0 all of the canvas), lines };
-  // arrows: { from, to, colour, width, side, alpha }; afresh: seen as at first.
+  // sheets: { x, colours (per node), side (−1 left half, 1 right half, 0 whole canvas), lines };
+  // arrows: { from, to, colour, width, side, alpha }; afresh: reset the view.
   show(sequence, sheets, arrows, afresh) {
     if (!this.gl) return;
     this.sequence = sequence;
@@ -147,7 +147,7 @@ class Viewer {
     return this.batch(this.gl.TRIANGLES, side, 1, corners);
   }
 
-  // A shaft of four sides and a head of four.
+  // A four-sided shaft and a four-sided head.
   arrow({ from, to, colour, width, side, alpha }) {
     const corners = [], way = minus(to, from), length = Math.hypot(...way);
     if (length > 0) {
@@ -189,7 +189,7 @@ class Viewer {
       const part = batch.side ? width / 2 : width, left = batch.side === 1 ? width / 2 : 0;
       gl.viewport(left, 0, part, height);
       gl.scissor(left, 0, part, height);
-      // Arrows reach out of the sheet, so that it fills three quarters.
+      // The sheet fills three quarters, to leave room for arrows.
       const pixels = 0.78 * this.zoom * Math.min(part / this.extents[0], height / (this.extents[1] || this.extents[0]));
       const depth = 0.1 / (Math.hypot(...this.extents) * Math.max(this.zoom, 1));
       gl.uniform3f(this.uniform.scale, (2 * pixels) / part, (2 * pixels) / height, -depth);

@@ -1,4 +1,4 @@
-//! What figures with axes have in common: paper, axes, legend.
+//! Common parts of figures with axes: background, axes, legend.
 
 use super::drawing::{Area, Drawn};
 use super::series::{self, Mark, Series};
@@ -10,49 +10,49 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use std::ops::Range;
 
-/// Size of a figure: twice what it is shown at, since lines are drawn through whole pixels.
+/// Size of a figure in pixels: twice the displayed size, since lines are drawn at whole pixels.
 const SIZE: (u32, u32) = (1280, 840);
-/// Of one with two panels.
+/// Size of a figure with two panels.
 const TALL: (u32, u32) = (1280, 960);
-/// Around everything; on the right half of a number stands beyond the axis.
+/// Margins; the right one has room for half a number beyond the end of the axis.
 const MARGIN: i32 = 28;
 const RIGHT: i32 = 56;
-/// For the numbers and names of the axes.
+/// Room for the numbers and names of the axes.
 const BELOW: i32 = 88;
 const BESIDE: i32 = 150;
-/// Marks below an axis; numbers begin twice as far below.
+/// Length of tick marks; numbers begin at twice this distance.
 const TICK: i32 = 8;
-/// How many numbers an axis has at most.
+/// Maximum numbers along each axis.
 const NUMBERS: [usize; 2] = [9, 7];
-/// Share of a figure's height that a panel beneath it takes, its axis with it.
+/// Share of a figure's height for the lower panel and its axis.
 const BENEATH: f64 = 0.42;
-/// Least width of what lies between axes that are to scale, in pixels.
+/// Minimum width of the plot area of figures to scale, in pixels.
 const NARROWEST: f64 = 560.0;
 
-/// How the numbers along an axis are told.
+/// Formatter of the numbers along an axis.
 type Label<'l> = Box<dyn Fn(&f64) -> String + 'l>;
 
-/// Axes with their names and extents.
+/// Title, and names and extents of the axes.
 pub(super) struct Axes<'t> {
     pub(super) title: &'t str,
     pub(super) x: (&'t str, Range<f64>),
     pub(super) y: (&'t str, Range<f64>),
 }
 
-/// What is to be drawn between axes, the lowest first.
+/// Series to draw, bottom first.
 #[derive(Default)]
 pub(super) struct Chart(Vec<Series>);
 
 /// Draws a figure.
 ///
 /// # Errors
-/// Extents that no axis can have.
+/// Invalid extents of an axis.
 pub(super) fn figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
     let chart = Chart::filled(fill);
     draw(axes.title, SIZE, &[&chart], |area| linear(area, axes.x, axes.y, BELOW, &chart))
 }
 
-/// Draws a figure in which a metre along one axis is as long as along the other.
+/// Draws a figure with the same scale along both axes.
 ///
 /// # Errors
 /// As [`figure`].
@@ -60,7 +60,7 @@ pub(super) fn figure_to_scale(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> 
     let chart = Chart::filled(fill);
     let (mut x, mut y) = (axes.x, axes.y);
     let length = |extent: &Range<f64>| extent.end - extent.start;
-    // As high as others, and as wide as that asks for; a second row of the legend is not expected.
+    // Of standard height, and as wide as the scale requires; assumes a legend of one row.
     let beside = BESIDE + MARGIN + RIGHT;
     let most = f64::from(SIZE.0 as i32 - beside);
     let inner = SIZE.1 as i32 - BELOW - MARGIN - MARGIN / 2 - 2 * MARGIN - TITLE - series::ROW;
@@ -74,7 +74,7 @@ pub(super) fn figure_to_scale(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> 
     draw(axes.title, size, &[&chart], |area| linear(area, x, y, BELOW, &chart))
 }
 
-/// Draws a figure with a second panel beneath it, over the same x.
+/// Draws a figure of two panels, one above the other, over the same x.
 ///
 /// # Errors
 /// As [`figure`].
@@ -88,7 +88,7 @@ pub(super) fn figure_over(
     draw(axes.title, TALL, &[&charts[0], &charts[1]], |area| {
         let (_, high) = area.dim_in_pixel();
         let (upper, lower) = area.split_vertically((f64::from(high) * (1.0 - BENEATH)) as i32);
-        // The numbers of both are those of the lower.
+        // Only the lower panel has numbers along x.
         linear(&upper, ("", axes.x.1.clone()), axes.y, 0, &charts[0])?;
         linear(&lower, axes.x, beneath, BELOW, &charts[1])
     })
@@ -97,7 +97,7 @@ pub(super) fn figure_over(
 /// Draws a figure with logarithmic axes.
 ///
 /// # Errors
-/// Extents that no such axis can have.
+/// Invalid extents of a logarithmic axis.
 pub(super) fn log_figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
     let chart = Chart::filled(fill);
     draw(axes.title, SIZE, &[&chart], |area| {
@@ -106,10 +106,10 @@ pub(super) fn log_figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn
     })
 }
 
-/// Draws a figure of which only y is logarithmic.
+/// Draws a figure with a logarithmic y axis.
 ///
 /// # Errors
-/// Extents that no such axis can have.
+/// Invalid extents of a logarithmic axis.
 pub(super) fn half_log_figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> Drawn<String> {
     let chart = Chart::filled(fill);
     draw(axes.title, SIZE, &[&chart], |area| {
@@ -119,9 +119,9 @@ pub(super) fn half_log_figure(axes: Axes<'_>, fill: impl FnOnce(&mut Chart)) -> 
     })
 }
 
-/// Both axes are linear.
+/// Draws linear axes and a chart.
 ///
-/// * `below` — height left for numbers and name of x, in pixels; 0 for none
+/// * `below` — height for the numbers and name of x, in pixels; 0 for none
 fn linear(
     area: &Area<'_>,
     x: (&str, Range<f64>),
@@ -133,7 +133,7 @@ fn linear(
     between(area, (x.1, y.1), [x.0, y.0], labels, below, chart)
 }
 
-/// Paper, title and legend; `rest` draws on what is left.
+/// Draws background, title and legend; `rest` draws on the remaining area.
 fn draw(
     title: &str,
     size: (u32, u32),
@@ -153,11 +153,11 @@ fn draw(
         rest(&below)?;
         area.present()?;
     }
-    // Opaque is what is drawn anyway.
+    // Opaque is the default.
     Ok(figure.replace(" opacity=\"1\"", ""))
 }
 
-/// Axes of any kind, and a chart between them.
+/// Draws axes of any kind and a chart.
 fn between<R, S, X, Y>(
     area: &Area<'_>,
     (x, y): (R, S),
@@ -182,13 +182,13 @@ where
     let mut mesh = context.configure_mesh();
     mesh.x_desc(x_name).y_desc(y_name).x_label_formatter(&x_label).y_label_formatter(&y_label);
     mesh.x_labels(NUMBERS[0]).y_labels(NUMBERS[1]).light_line_style(WHITE);
-    // Numbers of both axes meet in the corner.
+    // Longer ticks below: the numbers of both axes meet in the corner.
     mesh.set_tick_mark_size(LabelAreaPosition::Bottom, TICK);
     mesh.label_style(("sans-serif", TEXT).into_font().color(&INK)).draw()?;
     chart.0.iter().try_for_each(|series| series.draw(&mut context))
 }
 
-/// With as many decimals as tell an axis's numbers apart; powers where they are very small or large.
+/// Formats with as many decimals as distinguish the numbers; in scientific notation if very small or large.
 fn numbers(extent: &Range<f64>, at_most: usize) -> Label<'static> {
     let largest = extent.start.abs().max(extent.end.abs());
     if !(1e-3..1e6).contains(&largest) {
@@ -200,14 +200,14 @@ fn numbers(extent: &Range<f64>, at_most: usize) -> Label<'static> {
         marks.iter().all(|mark| (mark * unit - (mark * unit).round()).abs() < 1e-6 * largest * unit)
     };
     let decimals = (0..9).find(told).unwrap_or(9) as usize;
-    // What rounds to zero has no sign.
+    // A value that rounds to zero has no sign.
     Box::new(move |value| {
         let value = if value.abs() < 1e-9 * largest { 0.0 } else { *value };
         signed(format!("{value:.decimals$}"))
     })
 }
 
-/// A logarithmic axis, marked at 1, 2 and 5 of each of up to three decades, else at powers of ten.
+/// A logarithmic axis with ticks at 1, 2 and 5 over up to three decades, else at powers of ten.
 fn decades(extent: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let [from, to] = [extent.start.log10().floor(), extent.end.log10().ceil()].map(|power| power as i32);
     let steps: &[f64] = if extent.end < 1e3 * extent.start { &[1.0, 2.0, 5.0] } else { &[1.0] };
@@ -216,10 +216,10 @@ fn decades(extent: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     extent.log_scale().with_key_points(marks)
 }
 
-/// A round number, as a power where it is very small or large.
+/// Formats a round number, in scientific notation if very small or large.
 fn power(value: &f64) -> String {
     match value.abs() {
-        // What is computed as 2 · 10⁻³ may end in many digits.
+        // The computed 2 · 10⁻³ may have rounding errors in the last digits.
         size if (1e-3..1e4).contains(&size) => format!("{}", (value * 1e9).round() / 1e9),
         _ => signed(format!("{value:.0e}")),
     }
@@ -234,11 +234,11 @@ impl Chart {
 
     fn add(&mut self, mark: Mark, pieces: impl IntoIterator<Item = Vec<(f64, f64)>>, label: &str) {
         let series = Series::new(mark, pieces, label);
-        // What is not there has no place in the legend.
+        // Empty series do not appear in the legend.
         self.0.extend(series.is_drawn().then_some(series));
     }
 
-    /// Areas within outlines.
+    /// Adds filled polygons.
     pub(super) fn areas(
         &mut self,
         outlines: impl IntoIterator<Item = Vec<(f64, f64)>>,
@@ -248,7 +248,7 @@ impl Chart {
         self.add(Mark::Areas(colour), outlines, label);
     }
 
-    /// A line through points in order; it is broken where the number of one is not that after the last.
+    /// Adds a line through numbered points; it is interrupted where the numbers are not consecutive.
     pub(super) fn line(
         &mut self,
         points: impl IntoIterator<Item = (usize, f64, f64)>,
@@ -256,7 +256,7 @@ impl Chart {
         label: &str,
     ) {
         let points: Vec<_> = points.into_iter().collect();
-        // Sequences of one kind follow one another, each from its first frame.
+        // Sequences of one kind follow each other; each starts at its first frame.
         let pieces = points.chunk_by(|a, b| b.0 == a.0 + 1);
         self.add(
             Mark::Line(style),
@@ -265,7 +265,7 @@ impl Chart {
         );
     }
 
-    /// Lines through the points of each piece; without a label the legend names them by their dots.
+    /// Adds a line per piece; without a label, they share the legend entry of their dots.
     pub(super) fn paths(
         &mut self,
         pieces: impl IntoIterator<Item = Vec<(f64, f64)>>,
@@ -275,7 +275,7 @@ impl Chart {
         self.add(Mark::Line(style), pieces, label);
     }
 
-    /// Dots of a style.
+    /// Adds dots of a size and style.
     pub(super) fn dots(
         &mut self,
         points: impl IntoIterator<Item = (f64, f64)>,
@@ -285,7 +285,7 @@ impl Chart {
         self.add(Mark::Dots(size, style), [points.into_iter().collect()], label);
     }
 
-    /// A broken line through points in order.
+    /// Adds a dashed line.
     pub(super) fn dashes(
         &mut self,
         points: impl IntoIterator<Item = (f64, f64)>,
@@ -295,7 +295,7 @@ impl Chart {
         self.add(Mark::Dashes(style), [points.into_iter().collect()], label);
     }
 
-    /// Crosses.
+    /// Adds crosses.
     pub(super) fn crosses(
         &mut self,
         points: impl IntoIterator<Item = (f64, f64)>,

@@ -1,4 +1,4 @@
-//! How each curve's residual fell, step by step.
+//! The residual of each curve, step by step.
 
 use super::chart::{Axes, half_log_figure};
 use super::drawing::Drawn;
@@ -6,20 +6,20 @@ use super::palette::{BLUE, GREEN, ORANGE, PINK, SKY, VERMILLION};
 use cloth_fit::incremental::FitReport;
 use plotters::style::{Color, RGBColor};
 
-/// One a component, in their order.
+/// One colour per component, in order.
 const COLOURS: [RGBColor; 6] = [BLUE, VERMILLION, GREEN, PINK, ORANGE, SKY];
 
 /// # Errors
-/// No curve at all.
+/// No curve.
 pub(super) fn draw(report: &FitReport) -> Drawn<String> {
     let course = |rms: &[f64]| -> Vec<(f64, f64)> {
         let share = |(step, residual): (usize, &f64)| {
             let share = residual / rms[rms.len() - 1];
-            // A residual of nothing has no place on such an axis, and the legend says so.
+            // A zero residual cannot be drawn on a logarithmic axis; the legend says so.
             ((step + 1) as f64, if share > 0.0 { share } else { f64::NAN })
         };
         match rms {
-            // It started at its minimum.
+            // The fit started at its minimum.
             [] => vec![(0.0, 1.0)],
             _ => rms.iter().enumerate().map(share).collect(),
         }

@@ -1,4 +1,4 @@
-//! Correlation of the control values of each curve, a block a curve.
+//! Correlation of control values, one block per curve.
 
 use super::drawing::{Area, Drawn};
 use super::palette::{BLUE, GREY, VERMILLION};
@@ -9,24 +9,24 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 const MARGIN: i32 = 28;
-/// Blocks in a row, and the least size of one.
+/// Blocks in a row, and the minimum size of a block, in pixels.
 const COLUMNS: usize = 3;
 const LEAST: i32 = 400;
-/// Side of a cell, and what stands before and between blocks.
+/// Side of a cell, and the space for numbers and between blocks, in pixels.
 const CELL: i32 = 76;
 const NUMBERS: i32 = 48;
 const NAME: i32 = 44;
 const GAP: i32 = 44;
-/// The scale beneath: its height and steps.
+/// Height and number of steps of the colour scale below.
 const SCALE: i32 = 24;
 const STEPS: i32 = 20;
 const BELOW: i32 = 150;
 const NAME_OF_SCALE: &str = "correlation [–]; rows and columns: control points from the smallest strain";
-/// A cell of which nothing is known.
+/// Colour of a cell without data.
 const UNKNOWN: RGBColor = RGBColor(225, 225, 225);
 
 /// # Errors
-/// No curve of several control values.
+/// No curve with several control values.
 pub(super) fn draw(report: &FitReport) -> Drawn<String> {
     let stages: Vec<&StageReport> = report.last_stages().filter(|stage| stage.curve.observed).collect();
     let most = |stages: &[&StageReport]| stages.iter().map(|s| s.curve.correlations.len()).max().unwrap_or(0);
@@ -35,7 +35,7 @@ pub(super) fn draw(report: &FitReport) -> Drawn<String> {
     }
     let block = (NUMBERS + CELL * most(&stages) as i32).max(LEAST);
     let columns = stages.len().min(COLUMNS) as i32;
-    // Where each row of blocks begins, and the last one ends.
+    // Top of each row of blocks, and the bottom of the last.
     let mut tops = vec![2 * MARGIN + TITLE];
     for row in stages.chunks(COLUMNS) {
         tops.push(tops[tops.len() - 1] + NAME + NUMBERS + CELL * most(row) as i32 + GAP);
@@ -60,7 +60,7 @@ pub(super) fn draw(report: &FitReport) -> Drawn<String> {
     Ok(figure.replace(" opacity=\"1\"", ""))
 }
 
-/// One curve: its name, the numbers of its control points, a cell a pair.
+/// Draws one curve: name, numbers of the control points, and a cell per pair.
 fn draw_block(area: &Area<'_>, (x, y): (i32, i32), stage: &StageReport) -> Drawn<()> {
     writing::write(area, &stage.name(), (x, y + NAME / 2), (TEXT, HPos::Left, INK))?;
     let (left, top) = (x + NUMBERS, y + NAME + NUMBERS);
@@ -75,7 +75,7 @@ fn draw_block(area: &Area<'_>, (x, y): (i32, i32), stage: &StageReport) -> Drawn
             area.draw(&Rectangle::new([from, to], fill.filled()))?;
             area.draw(&Rectangle::new([from, to], WHITE.stroke_width(2)))?;
             let text = value.map_or("–".into(), |value| signed(format!("{value:.2}")));
-            // White reads better on what is dark.
+            // White text on dark cells.
             let ink = if value.is_some_and(|value| value.abs() > 0.6) { WHITE } else { INK };
             writing::write(area, &text, (left + middle(j), top + middle(i)), (22, HPos::Center, ink))?;
         }
@@ -83,7 +83,7 @@ fn draw_block(area: &Area<'_>, (x, y): (i32, i32), stage: &StageReport) -> Drawn
     Ok(())
 }
 
-/// What the colours mean.
+/// Draws the colour scale.
 fn scale(area: &Area<'_>, (x, y): (i32, i32)) -> Drawn<()> {
     let wide = 20;
     for step in 0..=STEPS {
@@ -109,7 +109,7 @@ fn scale(area: &Area<'_>, (x, y): (i32, i32)) -> Drawn<()> {
     )
 }
 
-/// From blue by way of white to vermillion.
+/// Colour from blue through white to vermillion.
 fn colour(value: f64) -> RGBColor {
     let full = if value < 0.0 { BLUE } else { VERMILLION };
     let share = value.abs().min(1.0);

@@ -1,4 +1,4 @@
-//! Something measured and simulated in every frame, against the extension: the measured cycle thin, the model thick.
+//! A quantity measured and simulated in every frame, against the extension: measured thin, model thick.
 
 use super::chart::{Axes, figure};
 use super::drawing::Drawn;
@@ -7,21 +7,21 @@ use crate::shown::extension;
 use cloth_data::frame::Kind;
 use plotters::style::Color;
 
-/// A frame.
+/// A frame of the figure.
 pub(super) struct Point {
-    /// Its index in its sequence: lines are broken where frames are missing.
+    /// Index in the sequence; lines are interrupted at missing frames.
     pub(super) frame: usize,
     pub(super) extension: f64,
     pub(super) measured: f64,
     pub(super) simulated: f64,
-    /// Of the second kind.
+    /// Draw as an open dot: a frame of the second kind.
     pub(super) open: bool,
 }
 
-/// Draws frames in their order.
+/// Draws the frames in order.
 ///
-/// * `name` — what is measured, with its unit
-/// * `kinds` — what the legend calls measured frames of the first and of the second kind
+/// * `name` — the measured quantity with its unit
+/// * `kinds` — legend entries for measured frames of the first and second kind
 ///
 /// # Errors
 /// No frame, or frames without extent.

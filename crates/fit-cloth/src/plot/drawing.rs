@@ -1,14 +1,14 @@
-//! Where figures are drawn, and what comes of it.
+//! Types of the drawing backend.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::error::Error;
 
-/// What a drawing may fail with.
+/// Result of a drawing.
 pub(super) type Drawn<T> = Result<T, Box<dyn Error>>;
 
-/// Where a figure is drawn.
+/// The drawing area of a figure.
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Where series are drawn.
+/// The chart that series are drawn in.
 pub(super) type Context<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;

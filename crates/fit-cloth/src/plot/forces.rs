@@ -1,4 +1,4 @@
-//! Force against extension or shear angle: the measured loop, and the model, one clip a sequence.
+//! Force against extension or shear angle: the measured loop and the model, one clip per sequence.
 
 use super::cycle::{self, Point};
 use super::drawing::Drawn;
@@ -6,10 +6,10 @@ use crate::shown::pulled_rows;
 use cloth_data::frame::{Kind, Phase};
 use cloth_fit::stage::report::{ForceRow, SequenceReport};
 
-/// Draws all sequences of a kind.
+/// Draws all sequences of one kind.
 ///
 /// # Errors
-/// No forces at all.
+/// No forces.
 pub(super) fn draw(title: &str, kind: Kind, sequences: &[&SequenceReport]) -> Drawn<String> {
     let point = |row: &ForceRow| Point {
         frame: row.frame,

@@ -1,4 +1,4 @@
-//! A measure of the whole against extension: measured, and the model, frame by frame.
+//! A measure of the whole sheet against extension: measured and simulated, frame by frame.
 
 use super::cycle::{self, Point};
 use super::drawing::Drawn;

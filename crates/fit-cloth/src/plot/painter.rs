@@ -1,4 +1,4 @@
-//! Faces and lines in the order of their distance.
+//! Painter's algorithm: faces and lines sorted by depth.
 
 use super::drawing::{Area, Drawn};
 use super::view::View;
@@ -7,32 +7,32 @@ use nalgebra::Vector3;
 use plotters::prelude::*;
 use std::f64::consts::TAU;
 
-/// The two sides of the cloth, in full light.
+/// Colours of the two sides of the cloth, fully lit.
 const FRONT: [f64; 3] = [126.0, 164.0, 210.0];
 const BACK: [f64; 3] = [222.0, 184.0, 150.0];
-/// The support, and the sheet laid flat.
+/// Colours of the support and of the sheet laid flat.
 const SUPPORT: [f64; 3] = [200.0, 200.0, 200.0];
 const FLAT: RGBColor = RGBColor(228, 228, 228);
 const OUTLINE: RGBColor = RGBColor(70, 70, 70);
-/// Least share of light on a face.
+/// Minimum brightness of a face, as a share of full light.
 const DARK: f64 = 0.42;
-/// Faces reach so far beyond their edges, and at most so far beyond their corners, in pixels: no paper shines through
-/// between neighbours, whose corners are rounded to pixels.
+/// Faces are enlarged by this beyond their edges, and at most by this beyond their corners, in pixels, so that no gaps
+/// show between neighbours whose corners are rounded to pixels.
 const OVERLAP: f64 = 1.2;
 const CORNER: f64 = 4.0;
-/// Longest head of an arrow, in pixels.
+/// Maximum length of an arrow head, in pixels.
 const HEAD: f64 = 18.0;
-/// A circle's corners.
+/// Corners of a circle.
 const CORNERS: usize = 48;
 
-/// Where a panel shows what.
+/// Mapping from view coordinates to a panel's pixels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Panel {
-    /// Pixels a metre.
+    /// Pixels per metre.
     pub(super) scale: f64,
-    /// Its middle, in pixels.
+    /// Centre of the panel, in pixels.
     pub(super) middle: [f64; 2],
-    /// What is seen there, right and up, m.
+    /// View coordinates at the centre, right and up, m.
     pub(super) centre: [f64; 2],
 }
 
@@ -43,7 +43,7 @@ enum Item {
     Arrow([[f64; 2]; 2], ShapeStyle),
 }
 
-/// What is to be drawn, with how near it is.
+/// Items to draw, with their depth.
 pub(super) struct Painter<'v> {
     view: &'v View,
     panel: Panel,
@@ -55,11 +55,11 @@ impl<'v> Painter<'v> {
         Self { view, panel, items: Vec::new() }
     }
 
-    /// The sheet, its two sides in two colours, and its border.
+    /// Adds the sheet, its sides in two colours, and its border.
     pub(super) fn cloth(&mut self, mesh: &Mesh, positions: &[Vector3<f64>]) {
-        // Light falls on the mean normals of corners, so that facets show less.
+        // Shading by the mean normals at nodes, so that facets are less visible.
         let mut normals = vec![Vector3::zeros(); mesh.len()];
-        // Where a node was not seen there is a hole.
+        // Nodes that were not observed leave a hole.
         let is_seen = |nodes: &[usize]| {
             nodes.iter().all(|&node| positions[node].iter().all(|coordinate| coordinate.is_finite()))
         };
@@ -74,7 +74,7 @@ impl<'v> Painter<'v> {
             let smooth: Vector3<f64> = triangle.iter().map(|&node| normals[node]).sum();
             self.face(&corners, smooth, colour);
         }
-        // An edge lies as near as its triangle and before it.
+        // An edge has the depth of its triangle, slightly nearer.
         let nearer =
             2e-2 * self.view.extent(positions).iter().flatten().fold(0.0, |m: f64, c| m.max(c.abs()));
         let edges = mesh.edges().unwrap_or_default();
@@ -88,51 +88,51 @@ impl<'v> Painter<'v> {
         }
     }
 
-    /// A node that is held.
+    /// Adds a held node.
     pub(super) fn pin(&mut self, at: Vector3<f64>) {
         let [.., depth] = self.view.see(at);
         let item = Item::Pin(self.pixel(at));
         self.items.push((depth + self.panel.scale.recip() * 20.0, item));
     }
 
-    /// Something flat below everything.
+    /// Adds a flat polygon below everything.
     pub(super) fn floor(&mut self, outline: &[Vector3<f64>]) {
         self.items.push((f64::MIN, Item::Face(outline.iter().map(|&p| self.pixel(p)).collect(), FLAT)));
     }
 
-    /// A level disc below everything.
+    /// Adds a horizontal disc below everything.
     pub(super) fn disc(&mut self, centre: Vector3<f64>, radius: f64) {
         self.floor(&self.circle(centre, radius));
     }
 
-    /// A level circle above everything.
+    /// Adds a horizontal circle above everything.
     pub(super) fn ring(&mut self, centre: Vector3<f64>, radius: f64) {
         let mut points = self.circle(centre, radius);
         points.push(points[0]);
         self.line(&points, OUTLINE.stroke_width(2));
     }
 
-    /// A line above everything but arrows.
+    /// Adds a line above everything but arrows.
     pub(super) fn line(&mut self, points: &[Vector3<f64>], style: ShapeStyle) {
         let points = points.iter().map(|&point| self.pixel(point)).collect();
         self.items.push((0.5 * f64::MAX, Item::Line(points, style)));
     }
 
-    /// An arrow above everything, as it is seen.
+    /// Adds an arrow above everything.
     pub(super) fn arrow(&mut self, from: Vector3<f64>, to: Vector3<f64>, style: ShapeStyle) {
         self.items.push((f64::MAX, Item::Arrow([self.place(from), self.place(to)], style)));
     }
 
-    /// What stands below a support, down to some point.
+    /// Adds a cylindrical support, from its top down to the height of `foot`.
     pub(super) fn cylinder(&mut self, centre: Vector3<f64>, radius: f64, foot: Vector3<f64>) {
         let down = foot - centre;
-        // A little smaller than what lies on it, so that it never comes through.
+        // Slightly smaller than the area that the sheet lies on, so that it never shows through.
         let top = self.circle(centre + 0.05 * down, 0.97 * radius);
         for corner in 0..CORNERS {
             let [a, b] = [top[corner], top[(corner + 1) % CORNERS]];
             let outwards = (0.5 * (a + b) - centre).dot(&self.view.towards);
             if outwards > 0.0 {
-                // Drawn in pieces, as the painter sorts by middles.
+                // Drawn in pieces, since items are sorted by their centres.
                 for piece in 0..8 {
                     let [from, to] = [piece, piece + 1].map(|i| f64::from(i) / 8.0);
                     let at = |point: Vector3<f64>, share: f64| point + share * down;
@@ -143,7 +143,7 @@ impl<'v> Painter<'v> {
         }
     }
 
-    /// Draws all, the farthest first.
+    /// Draws all items, the farthest first.
     pub(super) fn draw(mut self, area: &Area<'_>) -> Drawn<()> {
         self.items.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, item) in self.items {
@@ -157,7 +157,7 @@ impl<'v> Painter<'v> {
         Ok(())
     }
 
-    /// A flat face, lit by a normal on the side that is seen.
+    /// Adds a flat face, shaded by its normal on the visible side.
     fn face(&mut self, corners: &[Vector3<f64>], normal: Vector3<f64>, colour: [f64; 3]) {
         let facing = normal.dot(&self.view.towards).signum();
         let light = normal.try_normalize(0.0).map_or(0.0, |n| facing * n.dot(&self.view.light()));
@@ -167,7 +167,7 @@ impl<'v> Painter<'v> {
         let middle = [0, 1].map(|axis| seen.iter().map(|p| p[axis]).sum::<f64>() / seen.len() as f64);
         let from_middle: Vec<[f64; 2]> = seen.iter().map(|p| [p[0] - middle[0], p[1] - middle[1]]).collect();
         let farthest = from_middle.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
-        // An edge lies about as far from the middle as the circle within.
+        // An edge lies at about the radius of the inscribed circle.
         let grown = 1.0 + (OVERLAP / inner_radius(&from_middle)).min(CORNER / farthest.max(1.0));
         let spread = |[x, y]: &[f64; 2]| {
             ((middle[0] + grown * x).round() as i32, (middle[1] + grown * y).round() as i32)
@@ -176,7 +176,7 @@ impl<'v> Painter<'v> {
         self.items.push((self.depth(corners), item));
     }
 
-    /// The corners of a level circle.
+    /// Corners of a horizontal circle.
     fn circle(&self, centre: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
         let [first, second] = self.view.level();
         let corner = |index: usize| {
@@ -193,7 +193,7 @@ impl<'v> Painter<'v> {
     fn place(&self, point: Vector3<f64>) -> [f64; 2] {
         let Panel { scale, middle, centre } = self.panel;
         let [x, y, _] = self.view.see(point);
-        // Pixels count downwards.
+        // Pixel rows count downwards.
         [middle[0] + scale * (x - centre[0]), middle[1] - scale * (y - centre[1])]
     }
 
@@ -203,7 +203,7 @@ impl<'v> Painter<'v> {
     }
 }
 
-/// Twice the area of a polygon over its length: the radius of the circle within, if it has one.
+/// Twice the area of a polygon over its perimeter: the radius of the inscribed circle, if there is one.
 fn inner_radius(corners: &[[f64; 2]]) -> f64 {
     let next = corners.iter().cycle().skip(1);
     let (area, length) = corners.iter().zip(next).fold((0.0, 0.0), |(area, length), ([x, y], [u, v])| {
@@ -212,12 +212,12 @@ fn inner_radius(corners: &[[f64; 2]]) -> f64 {
     area.abs() / length.max(1.0)
 }
 
-/// Across a face, as long as twice the area of its first three corners.
+/// Normal of a face, as long as twice the area of its first three corners.
 fn cross(corners: &[Vector3<f64>]) -> Vector3<f64> {
     (corners[1] - corners[0]).cross(&(corners[2] - corners[0]))
 }
 
-/// An arrow in one stroke, its head no longer than a third of it; a dot where it is too short to be seen.
+/// Draws an arrow in one stroke, its head at most a third of its length; a dot if it is too short to be visible.
 pub(super) fn draw_arrow(area: &Area<'_>, [from, to]: [[f64; 2]; 2], style: ShapeStyle) -> Drawn<()> {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);

@@ -1,4 +1,4 @@
-//! A frame as it was captured beside its equilibrium, with the forces on the clips.
+//! A captured frame beside its equilibrium, with the clip forces.
 
 use super::drawing::Drawn;
 use super::palette::{MEASURED, MODEL};
@@ -14,7 +14,7 @@ use plotters::style::{Color, RGBColor};
 
 /// Width of a panel, in pixels.
 const WIDTH: f64 = 620.0;
-/// How long the largest force is drawn, as a share of the sheet's diagonal.
+/// Length of the largest force, as a share of the sheet's diagonal.
 const LONGEST: f64 = 0.22;
 /// Width of arrows, in pixels.
 const ARROW: u32 = 5;

@@ -1,8 +1,8 @@
-//! The colours of figures.
+//! Colours of the figures.
 
 use plotters::style::RGBColor;
 
-// Okabe and Ito 2008: told apart by those who see red and green alike, too.
+// Okabe and Ito 2008: distinguishable with colour-blindness.
 pub(super) const BLUE: RGBColor = RGBColor(0, 114, 178);
 pub(super) const VERMILLION: RGBColor = RGBColor(213, 94, 0);
 pub(super) const GREEN: RGBColor = RGBColor(0, 158, 115);
@@ -11,6 +11,6 @@ pub(super) const ORANGE: RGBColor = RGBColor(230, 159, 0);
 pub(super) const SKY: RGBColor = RGBColor(86, 180, 233);
 pub(super) const GREY: RGBColor = RGBColor(110, 110, 110);
 
-/// What was simulated, and what was measured, in every figure.
+/// Colours of simulated and measured data in every figure.
 pub(super) const MODEL: RGBColor = BLUE;
 pub(super) const MEASURED: RGBColor = VERMILLION;

@@ -1,4 +1,4 @@
-//! Views of sheets side by side at one scale, without perspective.
+//! Views of sheets side by side at the same scale, without perspective.
 
 use super::drawing::{Area, Drawn};
 use super::painter::{Painter, Panel, draw_arrow};
@@ -8,43 +8,43 @@ use nalgebra::Vector3;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-/// What a panel's height is between, in pixels: twice what they are shown at.
+/// Minimum and maximum height of a panel, in pixels: twice the displayed size.
 const HEIGHTS: [f64; 2] = [360.0, 760.0];
-/// Around the sheet in a panel.
+/// Margin around the sheet in a panel.
 const MARGIN: f64 = 36.0;
-/// Height of the title of all panels, of their own titles, and of the scales beneath.
+/// Heights of the main title, of the panel titles, and of the scales below.
 const HEAD: f64 = 64.0;
 const NAME: f64 = 64.0;
 const FOOT: f64 = 76.0;
 
-/// What the length of the arrow beneath is between, in pixels, before its number is made a round one.
+/// Minimum and maximum length of the scale arrow, in pixels, before rounding its value.
 const LENGTHS: [f64; 2] = [80.0, 240.0];
 
 /// One view of a sheet.
 pub(super) struct Picture<'p> {
     pub(super) title: String,
     pub(super) view: View,
-    /// What must be seen, m; points that are not finite do not count.
+    /// Points that must be visible, m; non-finite points are ignored.
     pub(super) points: Vec<Vector3<f64>>,
     pub(super) paint: Box<dyn Fn(&mut Painter<'_>) + 'p>,
 }
 
-/// What the arrows in pictures are: the scale beneath has one of a round number.
+/// Scale of the arrows in the pictures; a scale arrow of a round value is drawn below.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArrowScale {
-    /// How long a unit is drawn, m.
+    /// Length of a unit, m.
     pub(super) metres: f64,
     pub(super) unit: &'static str,
     pub(super) style: ShapeStyle,
-    /// What they show, and the largest of it.
+    /// Name and largest value of the quantity.
     pub(super) name: &'static str,
     pub(super) largest: f64,
 }
 
-/// Draws them.
+/// Draws pictures side by side.
 ///
-/// * `title` — above all; "" for none
-/// * `width` — of each, in pixels
+/// * `title` — above all panels; "" for none
+/// * `width` — of each panel, in pixels
 ///
 /// # Errors
 /// Sheets without extent.
@@ -89,11 +89,11 @@ pub(super) fn draw(
         }
         area.present()?;
     }
-    // Opaque is what is drawn anyway; of thousands of faces that is a sixth of the file.
+    // Opaque is the default; with thousands of faces this saves a sixth of the file.
     Ok(figure.replace(" opacity=\"1\"", ""))
 }
 
-/// A round length of about so many metres; gives where its name ends, in pixels.
+/// Draws a scale bar of a round length near `about` metres; returns the end of its label, in pixels.
 fn scale_bar(area: &Area<'_>, about: f64, scale: f64, y: f64) -> Drawn<i32> {
     let length = round_below(about);
     let name = if length < 1.0 { number(1e3 * length, "mm") } else { number(length, "m") };
@@ -108,7 +108,7 @@ fn scale_bar(area: &Area<'_>, about: f64, scale: f64, y: f64) -> Drawn<i32> {
     Ok(to + 16 + writing::width(&name, TEXT))
 }
 
-/// An arrow of a round number, about the largest unless that is too short or too long.
+/// Draws a scale arrow of a round value, near the largest unless that is too short or too long.
 fn arrow_scale(area: &Area<'_>, arrows: ArrowScale, scale: f64, [x, y]: [f64; 2]) -> Drawn<()> {
     let unit = 1.0 / (arrows.metres * scale);
     let value = round_below(arrows.largest.clamp(LENGTHS[0] * unit, LENGTHS[1] * unit));
@@ -118,13 +118,13 @@ fn arrow_scale(area: &Area<'_>, arrows: ArrowScale, scale: f64, [x, y]: [f64; 2]
     writing::write(area, &text, (to as i32 + 16, y as i32), (TEXT, HPos::Left, INK))
 }
 
-/// 1, 2 or 5 of some power of ten, no more than a value.
+/// The largest of 1, 2 or 5 times a power of ten that does not exceed a value.
 fn round_below(value: f64) -> f64 {
     let decade = 10f64.powf(value.log10().floor());
     [5.0, 2.0, 1.0].into_iter().map(|n| n * decade).find(|round| *round <= value).unwrap_or(decade)
 }
 
-/// A round number with its unit.
+/// Formats a round number with its unit.
 fn number(value: f64, unit: &str) -> String {
     let decimals = (-value.log10().floor()).max(0.0) as usize;
     format!("{value:.decimals$} {unit}")

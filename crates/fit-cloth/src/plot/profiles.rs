@@ -1,4 +1,4 @@
-//! Profiles of a sheet over a table's edge, measured over simulated, every frame.
+//! Profiles of a sheet over a table's edge in every frame, measured on top of simulated.
 
 use super::chart::{Axes, figure_to_scale};
 use super::drawing::Drawn;
@@ -7,7 +7,7 @@ use crate::shown::Profile;
 use plotters::style::Color;
 
 /// # Errors
-/// No profile at all.
+/// No profile.
 pub(super) fn draw(title: &str, profiles: &[Profile]) -> Drawn<String> {
     let [measured, simulated] = [
         profiles.iter().flat_map(|profile| pieces(&profile.measured)).collect::<Vec<_>>(),
@@ -35,7 +35,7 @@ pub(super) fn draw(title: &str, profiles: &[Profile]) -> Drawn<String> {
     })
 }
 
-/// A profile, mm, broken where nothing was seen.
+/// Pieces of a profile, mm, split where no node was observed.
 fn pieces(profile: &[[Option<f64>; 2]]) -> impl Iterator<Item = Vec<(f64, f64)>> + '_ {
     let place = |point: &[Option<f64>; 2]| Some((1e3 * point[0]?, 1e3 * point[1]?));
     let pieces = profile.split(move |point| place(point).is_none());

@@ -1,4 +1,4 @@
-//! Where a frame was seen beside its equilibrium, node by node, magnified.
+//! Position residuals of a frame, node by node, magnified.
 
 use super::drawing::Drawn;
 use super::palette::{GREY, MEASURED};
@@ -12,7 +12,7 @@ use plotters::style::Color;
 
 /// Width of the figure, in pixels.
 const WIDTH: f64 = 1080.0;
-/// Residuals are drawn so many times as long.
+/// Magnification of the residuals.
 const TIMES: f64 = 5.0;
 
 /// # Errors
@@ -36,7 +36,7 @@ pub(super) fn draw(title: &str, sequence: &Sequence, found: &SequenceReport) -> 
     if found.multi_stable.contains(&sheet.frame) {
         caption += ", one of several equilibria";
     }
-    // What is seen of a table from its side.
+    // The table in side view.
     let edge = table.map(|table| {
         let [from, _, _, to] = sheet.table_top(table);
         [from, to]

@@ -1,4 +1,4 @@
-//! How every sequence was met, as a table with bars.
+//! Residuals of every sequence, as a table with bars.
 
 use super::drawing::{Area, Drawn};
 use super::palette::{GREY, MODEL};
@@ -10,25 +10,25 @@ use plotters::style::text_anchor::HPos;
 
 const MARGIN: i32 = 28;
 const ROW: i32 = 56;
-/// Where the title ends, and the heads of the columns.
+/// Bottom of the title and of the column headings.
 const TOP: i32 = 2 * MARGIN + TITLE;
 const HEAD: i32 = TOP + 80;
-/// The longest bar, and what stands beyond it.
+/// Length of the longest bar, and the room for text beyond it.
 const BAR: i32 = 240;
 const BEYOND: i32 = 120;
-/// Space between columns, and width of the two with whole numbers and forces.
+/// Space between columns, and widths of the columns of frames and forces.
 const SPACE: i32 = 40;
 const FRAMES: i32 = 110;
 const FORCE: i32 = 170;
 
 /// # Errors
-/// No sequence at all.
+/// No sequence.
 pub(super) fn draw(report: &FitReport) -> Drawn<String> {
     let sequences: Vec<&SequenceReport> =
         report.sequences().into_iter().map(|(_, sequence)| sequence).collect();
     let names = sequences.iter().map(|s| writing::width(&s.name, TEXT)).max().ok_or("no sequences")?;
     let names = names.max(writing::width("sequence", TEXT));
-    // The right ends of the columns of numbers, and the left ends of those of bars.
+    // Right ends of number columns, left ends of bar columns.
     let frames = MARGIN + names + SPACE + FRAMES;
     let force = frames + FORCE;
     let share = force + SPACE;
@@ -79,7 +79,7 @@ pub(super) fn draw(report: &FitReport) -> Drawn<String> {
     Ok(figure.replace(" opacity=\"1\"", ""))
 }
 
-/// A bar of a share of the longest, and its number; a dash where nothing was measured.
+/// Draws a bar, as a share of the longest, and its number; a dash if nothing was measured.
 fn bar(area: &Area<'_>, (x, y): (i32, i32), value: Option<(f64, String)>) -> Drawn<()> {
     let (length, text) = match &value {
         Some((share, text)) => ((share * f64::from(BAR)).round() as i32, &text[..]),

@@ -1,4 +1,4 @@
-//! What is drawn between axes, and how the legend names it.
+//! Series of points and their legend.
 
 use super::drawing::{Area, Context, Drawn};
 use super::writing::{self, INK, TEXT};
@@ -6,29 +6,29 @@ use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-/// A row of the legend, an entry's mark, and the space after each part, in pixels.
+/// Height of a legend row, width of a mark, and the space after each part, in pixels.
 pub(super) const ROW: i32 = 40;
 const MARK: i32 = 40;
 const GAP: i32 = 14;
-/// How the legend ends where points are no numbers.
+/// End of a legend entry with non-finite points.
 const LOST: &str = " points not drawn)";
 
-/// How points are drawn.
+/// Drawing style of points.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Mark {
     /// Filled polygons.
     Areas(RGBAColor),
-    /// Lines through the points of every piece; one point alone is a dot.
+    /// A line through the points of every piece; a single point is a dot.
     Line(ShapeStyle),
-    /// A broken line.
+    /// A dashed line.
     Dashes(ShapeStyle),
-    /// Dots of a size.
+    /// Dots of a given size.
     Dots(i32, ShapeStyle),
     /// Crosses.
     Crosses(ShapeStyle),
 }
 
-/// Points that are drawn alike, with their name in the legend if they have one.
+/// Points drawn in the same style, with an optional legend entry.
 #[derive(Debug, Clone)]
 pub(super) struct Series {
     mark: Mark,
@@ -37,7 +37,7 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// What is no number cannot be drawn, and the legend says so.
+    /// Drops non-finite points and counts them in the legend.
     pub(super) fn new(mark: Mark, pieces: impl IntoIterator<Item = Vec<(f64, f64)>>, label: &str) -> Self {
         let (mut all, mut lost) = (0, 0);
         let mut known = |mut piece: Vec<(f64, f64)>| {
@@ -51,7 +51,7 @@ impl Series {
         Self { mark, pieces, label: Some(label).filter(|label| !label.is_empty()) }
     }
 
-    /// Something of it can be seen, or should be.
+    /// True if the series has points to draw or to report as not drawn.
     pub(super) fn is_drawn(&self) -> bool {
         !self.pieces.is_empty() || self.label.as_ref().is_some_and(|label| label.ends_with(LOST))
     }
@@ -89,7 +89,7 @@ impl Series {
         Ok(())
     }
 
-    /// Its mark in the legend, from a place to the right.
+    /// Draws the mark of the legend entry, to the right of a point.
     fn sample(&self, area: &Area<'_>, (x, y): (i32, i32)) -> Drawn<()> {
         let middle = (x + MARK / 2, y);
         match self.mark {
@@ -109,7 +109,7 @@ impl Series {
     }
 }
 
-/// Named series in rows no wider than a figure; gives the height of all rows, in pixels.
+/// Draws the named series in rows that fit the figure; returns the height of all rows, in pixels.
 pub(super) fn legend(area: &Area<'_>, series: &[&Series], from: (i32, i32), to: i32) -> Drawn<i32> {
     let (mut x, mut y) = (from.0, from.1 + ROW / 2);
     let mut rows = 0;

@@ -1,4 +1,4 @@
-//! Shapes of a simulated sheet side by side.
+//! Shapes of a simulated sheet, side by side.
 
 use super::drawing::Drawn;
 use super::painter::Painter;
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 /// Width of a panel, in pixels.
 const WIDTH: f64 = 560.0;
 
-/// Shapes of the start, a third, two thirds and the end; of a drape that at rest, from the side and from above.
+/// Shapes at the start, a third, two thirds and the end; for a drape, the last from the side and from above.
 pub(super) fn draw(scene: &Scene, simulation: &Simulation) -> Drawn<String> {
     let support = scene.support.filter(|_| scene.measure == Some(Measure::DrapeCoefficient));
     let view = View::of(&scene.mesh, scene.gravity);
@@ -24,7 +24,7 @@ pub(super) fn draw(scene: &Scene, simulation: &Simulation) -> Drawn<String> {
             .collect(),
     };
     if support.is_some() {
-        // A flat disc shows nothing.
+        // The flat disc at the start shows nothing.
         panels.remove(0);
         panels.extend(simulation.frames.last().map(|last| ("from above".into(), view.above(), last)));
     }
@@ -40,7 +40,7 @@ pub(super) fn draw(scene: &Scene, simulation: &Simulation) -> Drawn<String> {
     picture::draw("", WIDTH, &pictures, None)
 }
 
-/// What must be in a picture.
+/// Points that must be visible in a picture.
 fn seen(scene: &Scene, support: Option<Circle>, view: &View, frame: &Frame) -> Vec<Vector3<f64>> {
     let mut points = frame.positions.clone();
     if let Some(circle) = support {
@@ -54,7 +54,7 @@ fn seen(scene: &Scene, support: Option<Circle>, view: &View, frame: &Frame) -> V
     points
 }
 
-/// Everything in a panel.
+/// Paints one panel.
 fn sheet(
     painter: &mut Painter<'_>,
     scene: &Scene,
@@ -77,7 +77,7 @@ fn sheet(
     painter.cloth(&scene.mesh, positions);
 }
 
-/// Head and foot of a support: it stands a little lower than the sheet hangs.
+/// Top and foot of a support; the foot is slightly below the sheet's lowest point.
 fn stand(scene: &Scene, circle: Circle, view: &View, positions: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
     let held = scene.held.iter().map(|held| positions[held.node]);
     let head = held.sum::<Vector3<f64>>() / scene.held.len().max(1) as f64;
@@ -85,12 +85,12 @@ fn stand(scene: &Scene, circle: Circle, view: &View, positions: &[Vector3<f64>])
     [head, head - (lowest + 0.5 * circle.radius) * view.upright]
 }
 
-/// How far the sheet reaches from a support's middle when it lies flat.
+/// Radius of the flat sheet around the centre of a support.
 fn flat_radius(scene: &Scene, circle: Circle) -> f64 {
     scene.mesh.material.iter().map(|m| (m - circle.centre).norm()).fold(0.0, f64::max)
 }
 
-/// The first, those at a third and two thirds, the last.
+/// Indices of the first frame, those at a third and two thirds, and the last.
 fn chosen(frames: usize) -> Vec<usize> {
     let last = frames.saturating_sub(1);
     let mut chosen = vec![0, last / 3, 2 * last / 3, last];

@@ -1,4 +1,4 @@
-//! The frame of a sequence that figures show, on a mesh that is fine enough to look at.
+//! The frame of a sequence shown in figures, on a mesh coarsened for drawing.
 
 use crate::shown::vector;
 use cloth_data::frame::{Kind, Table};
@@ -7,27 +7,27 @@ use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::Vector3;
 
-/// Nodes a side beyond which figures grow and show no more.
+/// Maximum nodes per side: more would enlarge the file without showing more.
 const FINEST: usize = 26;
 
-/// One frame.
+/// One frame of a sequence.
 pub(super) struct Sheet {
     /// Index of the frame in its sequence.
     pub(super) frame: usize,
-    /// How far the test went there.
+    /// Extension of the test in this frame.
     pub(super) extension: f64,
     /// Columns and rows of nodes.
     pub(super) grid: Grid,
-    /// In equilibrium.
+    /// The sheet in equilibrium.
     pub(super) mesh: Mesh,
-    /// Where its nodes were seen, m, NaN where not; empty where no shape was measured.
+    /// Observed positions of the nodes, m, NaN if not observed; empty if no shape was measured.
     pub(super) measured: Vec<Vector3<f64>>,
-    /// Root mean square distance over all nodes seen, m.
+    /// Root mean square distance over all observed nodes, m.
     pub(super) rms: Option<f64>,
 }
 
 impl Sheet {
-    /// The frame of the largest extension, of those with a shape if there are any.
+    /// The frame of largest extension, preferably with a measured shape.
     pub(super) fn farthest(shapes: &Shapes) -> Option<Self> {
         let order = |frame: &&FrameShape| (!frame.measured.is_empty(), frame.extension);
         let frame = shapes.frames.iter().max_by(|a, b| {
@@ -58,7 +58,7 @@ impl Sheet {
         })
     }
 
-    /// A figure's title with this frame.
+    /// Appends frame and extension to a figure's title.
     pub(super) fn titled(&self, title: &str, kind: Kind) -> String {
         let extension = match kind.extension() {
             Extension::ShearAngle => format!("shear angle {:.3} rad", self.extension),
@@ -68,7 +68,7 @@ impl Sheet {
         format!("{title}: frame {}, {extension}", self.frame)
     }
 
-    /// Lines of nodes along both sides.
+    /// Grid lines in both directions.
     pub(super) fn lines(&self) -> impl Iterator<Item = Vec<Vector3<f64>>> + '_ {
         let Grid { columns, rows, .. } = self.grid;
         let at = |column: usize, row: usize| self.mesh.positions[self.grid.node(column, row)];
@@ -76,7 +76,7 @@ impl Sheet {
         along.chain((0..columns).map(move |column| (0..rows).map(|row| at(column, row)).collect()))
     }
 
-    /// Corners of the table beneath it, from one end of the edge to the other.
+    /// Corners of the table below the sheet, from one end of the edge to the other.
     pub(super) fn table_top(&self, table: &Table) -> [Vector3<f64>; 4] {
         let [origin, edge, outward] =
             [table.edge_point_m, table.edge_direction, table.outward].map(Vector3::from);
@@ -95,7 +95,7 @@ impl Sheet {
     }
 }
 
-/// Every so many-th line of a grid and the last, with the nodes that are left and their triangles.
+/// Keeps every `stride`-th grid line and the last; returns the grid, the nodes kept and their triangles.
 fn coarser(grid: &Grid, stride: usize) -> Option<(Grid, Vec<usize>, Vec<[usize; 3]>)> {
     let kept = |count: usize| -> Vec<usize> {
         (0..count - 1).step_by(stride).chain(std::iter::once(count - 1)).collect()

@@ -1,5 +1,5 @@
-//! Stress against strain, or moment against curvature, with its 95 % band and the control points; beneath, how much of
-//! the sheet has which strain.
+//! Stress against strain, or moment against curvature, with its 95 % band and control points; below, the distribution
+//! of strain over the sheet.
 
 use super::chart::{Axes, Chart, figure_over};
 use super::drawing::Drawn;
@@ -9,23 +9,23 @@ use cloth_fit::stage::report::{Histogram, Sample, StageReport};
 use plotters::style::Color;
 use std::ops::Range;
 
-/// Which samples are drawn: a line through pixels that lie close together is not smooth.
+/// Only every so many samples are drawn: a line through close pixels is not smooth.
 const EVERY: usize = 4;
-/// A band is drawn no farther from the curve's own range than so many times its largest stress.
+/// A band is cut off at this multiple of the curve's stress range beyond that range.
 const FARTHEST: f64 = 1.0;
-/// Less of a range than this is not worth a word.
+/// Unvisited parts below this share of the range are not shaded.
 const LEAST: f64 = 5e-3;
 
 /// A curve in the units of its figure.
 struct Plotted<'r> {
     samples: Vec<Sample>,
     points: Vec<Sample>,
-    /// The strains between which the curve was seen.
+    /// The strains between which the curve was observed.
     seen: [f64; 2],
     histogram: &'r Histogram,
-    /// Of strain and stress, over all of it.
+    /// Extents of strain and stress.
     extents: [Range<f64>; 2],
-    /// The band reaches farther than is drawn.
+    /// True if the band is cut off.
     is_cut: bool,
 }
 
@@ -34,7 +34,7 @@ struct Plotted<'r> {
 pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
     let component = stage.components[0];
     let [x, y] = curve_labels(stage.model, component);
-    // Moments are small numbers.
+    // Moments are small: shown in mN.
     let (y, unit, seen) = match component.is_bending() {
         true => (y.replace("[N]", "[mN]"), 1e3, "curvatures of all frames"),
         false => (y, 1.0, "strains of all frames"),
@@ -75,7 +75,7 @@ impl<'r> Plotted<'r> {
             values.fold([0.0, 0.0], |[low, high]: [f64; 2], value| [low.min(value), high.max(value)])
         };
         let [strains, stresses] = [range(|s| s.strain), range(|s| s.stress)];
-        // What is known of a curve may be next to nothing.
+        // The band of a poorly known curve may be very wide.
         let most = FARTHEST * (stresses[1] - stresses[0]);
         let side = |sample: &Sample, side: usize| sample.band.map_or(0.0, |band| band[side]);
         let [low, high] = [
@@ -95,7 +95,7 @@ impl<'r> Plotted<'r> {
         Self { samples, points, seen: stage.curve.seen, histogram: &stage.curve.histogram, extents, is_cut }
     }
 
-    /// Marks the range from rest to the last control point where it was not seen, on either side.
+    /// Shades the range from rest to the last control point where it was not visited, on either side.
     fn shade(&self, chart: &mut Chart, heights: &Range<f64>, label: &str) {
         let last = self.points.iter().map(|point| point.strain).fold(0.0, f64::max);
         let [first_seen, last_seen] = self.seen;

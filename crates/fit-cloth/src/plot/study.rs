@@ -13,7 +13,7 @@ use super::drawing::Drawn;
 use cloth_sim::material::Model;
 use cloth_study::study::Study;
 
-/// Every figure with its name.
+/// All figures with their names.
 pub(super) fn figures(study: &Study) -> Vec<(String, Drawn<String>)> {
     let mut figures = vec![
         ("error-time".to_string(), error_time::of_fits(study)),

@@ -1,33 +1,33 @@
-//! From where a sheet is seen.
+//! Viewing directions.
 
 use cloth_data::frame::Table;
 use cloth_scene::scene::normal as normal_of;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector2, Vector3};
 
-/// A hanging sheet is seen from its front, turned so far and from so far above, rad.
+/// A hanging sheet is viewed from its front: turn and elevation, rad.
 const HANGING: [f64; 2] = [0.5, 0.2];
-/// A lying one is seen along warp, turned so far and from so far above, rad.
+/// A lying sheet is viewed along warp: turn and elevation, rad.
 const LYING: [f64; 2] = [0.35, 0.45];
-/// One between clips is seen from above its plane, one off a table from beyond the edge, rad.
+/// A sheet between clips is viewed from above its plane, one off a table from beyond the edge: turn and elevation, rad.
 const CLIPPED: [f64; 2] = [0.25, 0.95];
 const OFF_TABLE: [f64; 2] = [1.0, 0.35];
 
-/// A direction of view; all vectors of unit length.
+/// A viewing direction; all vectors are unit vectors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     /// Against gravity.
     pub(super) upright: Vector3<f64>,
-    /// To the right in the picture.
+    /// Right in the picture.
     right: Vector3<f64>,
     /// Up in the picture.
     up: Vector3<f64>,
-    /// To the eye.
+    /// Towards the eye.
     pub(super) towards: Vector3<f64>,
 }
 
 impl View {
-    /// A good view of a sheet; z is up where there is no gravity.
+    /// A good view of a sheet; z is up if there is no gravity.
     pub(super) fn of(mesh: &Mesh, gravity: Vector3<f64>) -> Self {
         let upright = (-gravity).try_normalize(0.0).unwrap_or(Vector3::z());
         let level = |direction: Vector3<f64>| direction - upright * direction.dot(&upright);
@@ -42,7 +42,7 @@ impl View {
         Self::straight(upright, front).aslant([turn, rise])
     }
 
-    /// Straight against the flattest direction of a sheet, weft to the right; one off a table along its edge.
+    /// Perpendicular to a sheet's mean plane, weft to the right; a sheet off a table is viewed along the edge.
     pub(super) fn against(mesh: &Mesh, table: Option<&Table>, gravity: Vector3<f64>) -> Self {
         if let Some(table) = table {
             let [edge, outward] = [table.edge_direction, table.outward].map(Vector3::from);
@@ -54,7 +54,7 @@ impl View {
         Self { upright: normal, right: weft, up: normal.cross(&weft), towards: normal }
     }
 
-    /// The same, but so that one sees what leaves the plane.
+    /// An oblique version of [`Self::against`] that shows out-of-plane shapes.
     pub(super) fn beside(mesh: &Mesh, table: Option<&Table>, gravity: Vector3<f64>) -> Self {
         let straight = Self::against(mesh, table, gravity);
         match table {
@@ -63,12 +63,12 @@ impl View {
         }
     }
 
-    /// Level, from a level direction.
+    /// A horizontal view; `towards` must be horizontal.
     fn straight(upright: Vector3<f64>, towards: Vector3<f64>) -> Self {
         Self { upright, right: upright.cross(&towards).normalize(), up: upright, towards }
     }
 
-    /// A level one turned around the upright, then from so far above, rad.
+    /// Turns a horizontal view around the vertical and raises it, rad.
     fn aslant(&self, [turn, rise]: [f64; 2]) -> Self {
         let upright = self.upright;
         let turned = Rotation3::from_axis_angle(&Unit::new_normalize(upright), turn) * self.towards;
@@ -77,7 +77,7 @@ impl View {
         Self { upright, right, up: towards.cross(&right), towards }
     }
 
-    /// The same from straight above.
+    /// The same view from vertically above.
     pub(super) fn above(&self) -> Self {
         Self { up: self.upright.cross(&self.right), towards: self.upright, ..*self }
     }
@@ -86,22 +86,22 @@ impl View {
         self.towards == self.upright
     }
 
-    /// Right, up, and towards the eye, m.
+    /// View coordinates of a point: right, up, towards the eye, m.
     pub(super) fn see(&self, point: Vector3<f64>) -> [f64; 3] {
         [self.right, self.up, self.towards].map(|axis| axis.dot(&point))
     }
 
-    /// Two level directions across each other.
+    /// Two perpendicular horizontal directions.
     pub(super) fn level(&self) -> [Vector3<f64>; 2] {
         [self.right, self.upright.cross(&self.right)]
     }
 
-    /// Where light comes from: over the left shoulder.
+    /// Direction towards the light: over the left shoulder.
     pub(super) fn light(&self) -> Vector3<f64> {
         (self.towards + 0.5 * self.up - 0.7 * self.right).normalize()
     }
 
-    /// Lowest and highest of what is seen, right and up, m.
+    /// Minimum and maximum of the view coordinates right and up, m.
     pub(super) fn extent(&self, points: &[Vector3<f64>]) -> [[f64; 2]; 2] {
         let seen = points.iter().map(|&point| self.see(point));
         seen.fold([[f64::MAX; 2], [f64::MIN; 2]], |[low, high], [x, y, _]| {
@@ -110,7 +110,7 @@ impl View {
     }
 }
 
-/// Normal of the plane that is closest to a sheet, on its front, and the direction of weft in that plane.
+/// Normal of a sheet's mean plane, on its front, and the direction of weft in that plane.
 fn flattest(mesh: &Mesh) -> [Vector3<f64>; 2] {
     let count = mesh.len() as f64;
     let middle = mesh.positions.iter().sum::<Vector3<f64>>() / count;
@@ -125,7 +125,7 @@ fn flattest(mesh: &Mesh) -> [Vector3<f64>; 2] {
     [normal, weft.try_normalize(0.0).unwrap_or_else(|| perpendicular(normal))]
 }
 
-/// Some direction across another.
+/// A direction perpendicular to another.
 fn perpendicular(direction: Vector3<f64>) -> Vector3<f64> {
     let aside = if direction.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     (aside - direction * aside.dot(&direction)).normalize()

@@ -1,27 +1,27 @@
 //! Text in figures.
 //!
-//! The reader's fonts are not known here: a character counts as 0.6 of the size, which is more than most take.
+//! The viewer's fonts are unknown: a character is taken as 0.6 of the size wide, more than most are.
 
 use super::drawing::{Area, Drawn};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Sizes of a title and of all else, in plotters' measure, in which text is so much smaller than it says.
+/// Font sizes of titles and other text, in plotters' units, `MEASURE` times the size in pixels.
 pub(super) const TITLE: i32 = 36;
 pub(super) const TEXT: i32 = 28;
 const MEASURE: f64 = 1.24;
-/// Below this it cannot be read.
+/// Minimum readable size.
 const SMALLEST: i32 = 20;
 
-/// Colour of text that belongs to no series.
+/// Colour of text other than legend entries.
 pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
 
-/// How wide a text is at most, in pixels.
+/// Upper bound of a text's width, in pixels.
 pub(super) fn width(text: &str, size: i32) -> i32 {
     (0.6 * f64::from(size) / MEASURE * text.chars().count() as f64).ceil() as i32
 }
 
-/// Writes a line that begins, is centred or ends at a place; its middle has the place's height.
+/// Writes a line that begins, is centred or ends at a point; it is centred vertically.
 pub(super) fn write(
     area: &Area<'_>,
     text: &str,
@@ -32,12 +32,12 @@ pub(super) fn write(
     Ok(area.draw(&Text::new(text, at, style))?)
 }
 
-/// A number with a minus that is as wide as a digit.
+/// Replaces hyphens in a number by minus signs, which are as wide as a digit.
 pub(super) fn signed(number: String) -> String {
     number.replace('-', "−")
 }
 
-/// Writes a line no wider than so many pixels: smaller, and at last cut off.
+/// Writes a line no wider than the given pixels: reduced in size, then cut off.
 pub(super) fn write_within(
     area: &Area<'_>,
     most: i32,

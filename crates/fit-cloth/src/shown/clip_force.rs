@@ -6,7 +6,7 @@ use cloth_fit::stage::report::{ForceRow, SequenceReport};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// What the cords exert on a clip, N, and the clip's middle, m.
+/// Force of the cords on a clip, N, and the clip's centre, m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ClipForce {
@@ -15,7 +15,8 @@ pub(crate) struct ClipForce {
     pub(crate) simulated: [f64; 3],
 }
 
-/// On each clip of a frame along the measured components, and what the model needs; clips without a force are left out.
+/// Measured and simulated force on each clip of a frame, along the measured components; clips without a force are
+/// omitted.
 pub(crate) fn clip_forces(sequence: &Sequence, found: &SequenceReport, frame: usize) -> Vec<ClipForce> {
     let centres = clip_centres(sequence, &sequence.frames[frame]);
     let sum = |clip: usize, value: fn(&ForceRow) -> f64| -> [f64; 3] {

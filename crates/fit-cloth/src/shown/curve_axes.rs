@@ -1,8 +1,8 @@
-//! The axes of a curve.
+//! Axis labels of a curve.
 
 use cloth_sim::material::{Component, Model};
 
-/// What a curve is over, and what it gives.
+/// Names and units of strain and stress, or curvature and moment.
 pub(crate) fn curve_labels(model: Model, component: Component) -> [String; 2] {
     let [strain, stress] = model.strain_measure(component).names();
     match component.is_bending() {

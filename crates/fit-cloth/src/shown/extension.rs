@@ -1,8 +1,8 @@
-//! How far a test went, as axes name it.
+//! Axis labels for the extension of a test.
 
 use cloth_data::kind::{Extension, Kind};
 
-/// What a test's extension is, for an axis.
+/// Name and unit of a test's extension.
 pub(crate) fn extension(kind: Kind) -> &'static str {
     match kind.extension() {
         Extension::ShearAngle => "effective shear angle [rad]",

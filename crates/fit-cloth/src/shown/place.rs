@@ -1,9 +1,9 @@
-//! A place of a shape, to compute with.
+//! Positions of a shape as vectors.
 
 use cloth_fit::stage::shapes::Place;
 use nalgebra::Vector3;
 
-/// In double precision.
+/// Converts a position to double precision.
 pub(crate) fn vector(place: Place) -> Vector3<f64> {
     Vector3::from(place.map(f64::from))
 }

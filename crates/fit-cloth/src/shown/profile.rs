@@ -7,7 +7,7 @@ use cloth_fit::stage::shapes::{FrameShape, Place, Shapes};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Of one frame: outward and height, m; nothing where no node of a line was seen.
+/// Profile of one frame: distance beyond the edge and height, m; `None` where no node of a line was observed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Profile {
@@ -16,7 +16,7 @@ pub(crate) struct Profile {
     pub(crate) simulated: Vec<[Option<f64>; 2]>,
 }
 
-/// One for every frame off a table.
+/// One profile per frame; empty for a sequence without a table.
 pub(crate) fn profiles(sequence: &Sequence, shapes: &Shapes) -> Vec<Profile> {
     let Some(table) = &sequence.table else { return Vec::new() };
     let across = |places: &[Place]| -> Vec<[Option<f64>; 2]> {

@@ -1,9 +1,9 @@
-//! The pull of a test among the forces on its clips.
+//! Selection of the pulling force of a test.
 
 use cloth_fit::stage::report::ForceRow;
 
-/// The rows of the force component that is largest: the pull, on the clip where it was measured. Its direction may turn
-/// with the clip; its place among the clip's components stays.
+/// The rows of the largest measured force component: the pull. Its direction may turn with the clip, but its index
+/// among the clip's components is the same in every frame.
 pub(crate) fn pulled_rows(rows: &[ForceRow]) -> Vec<&ForceRow> {
     let place = |index: usize| {
         let own = |row: &&ForceRow| row.frame == rows[index].frame && row.clip == rows[index].clip;

@@ -1,4 +1,4 @@
-//! What a check has found: a table, the repairs, a verdict.
+//! The result of a check: a table of findings, the repairs, a verdict.
 
 use super::list::list;
 use crate::subject::Subject;
@@ -7,10 +7,10 @@ use cloth_sim::curve::soundness::{Finding, Kind};
 use std::fmt::Write;
 use std::path::Path;
 
-/// One row a finding, what was repaired, and the verdict last.
+/// One row per finding, then the repairs and the verdict.
 ///
-/// * `findings` — of every subject
-/// * `repairs` — of every subject, if they were asked for and written to `out`
+/// * `findings` — one list per subject
+/// * `repairs` — one per subject, if requested and written to `out`
 pub fn check(
     file: &Path,
     subjects: &[Subject],
@@ -41,10 +41,10 @@ pub fn check(
     text + &verdict(file, subjects, findings, out)
 }
 
-/// What a repair did, in words.
+/// Describes a repair.
 pub fn repaired(subject: &Subject, repair: &Repair) -> String {
     if repair.is_unchanged() {
-        return "was sound and stays as it is".into();
+        return "sound, unchanged".into();
     }
     format!(
         "repaired: stress changed by {:.3e} {unit} rms, {:.3e} {unit} at most, at {} {:.4}",
@@ -70,7 +70,7 @@ fn row(subject: &Subject, finding: &Finding) -> String {
     format!("{kind:18}  {severity:8}  {interval:18}  {value:>10}  {limit:>10}  {}", finding.consequence())
 }
 
-/// The range of the control points.
+/// Range of the control points.
 fn range(subject: &Subject) -> String {
     let strains = subject.curve.strains();
     format!("0.0000 to {:.4}", strains[strains.len() - 1] / subject.strain_per_unit)
@@ -85,7 +85,9 @@ fn verdict(file: &Path, subjects: &[Subject], findings: &[Vec<Finding>], out: Op
     match (defects, out) {
         (0, _) => format!("{file}: sound{written}"),
         (_, Some(_)) => {
-            format!("{file}: NOT sound, {defects} defect{plural} in {names}; what was written is{written}")
+            format!(
+                "{file}: NOT sound, {defects} defect{plural} in {names}; --repair wrote sound curves{written}"
+            )
         }
         (_, None) => format!(
             "{file}: NOT sound, {defects} defect{plural} in {names}; --repair OUT writes the nearest stable curve"

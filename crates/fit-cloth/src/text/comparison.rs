@@ -1,11 +1,11 @@
-//! Models and variants side by side.
+//! A comparison of models and variants.
 
 use super::list::list;
 use super::number::percent;
 use cloth_fit::judge::compare::{Comparison, Criterion, Distance, Row};
 use serde::{Deserialize, Serialize};
 
-/// What stands in a row, and how wide on a terminal; text on the left, numbers on the right.
+/// Columns and their widths on a terminal; text is left-aligned, numbers right-aligned.
 const COLUMNS: [(&str, usize); 14] = [
     ("model", 15),
     ("variant", 16),
@@ -23,13 +23,13 @@ const COLUMNS: [(&str, usize); 14] = [
     ("", 0),
 ];
 
-/// A comparison in words and cells.
+/// A comparison as sentences and table cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ranking {
-    /// What ranks, in words.
+    /// The ranking criterion, as a sentence.
     pub by: String,
-    /// What no row tells: curves and predictions that are missing.
+    /// Missing curves and predictions, which the rows do not show.
     pub notes: Vec<String>,
     /// Names of the columns.
     pub columns: Vec<String>,
@@ -37,7 +37,7 @@ pub struct Ranking {
     pub rows: Vec<Vec<String>>,
 }
 
-/// One row a model and variant, best first, and what the figures are.
+/// One row per model and variant, best first, then the ranking criterion and missing curves.
 pub fn comparison(comparison: &Comparison) -> String {
     let names = COLUMNS.map(|(name, _)| name.to_string());
     let rows = comparison.rows.iter().map(cells);
@@ -45,7 +45,7 @@ pub fn comparison(comparison: &Comparison) -> String {
     format!("{lines}\n{}\n{}", ranked_by(comparison.ranked_by), losses(comparison))
 }
 
-/// The same in cells.
+/// The same as cells, for the page.
 pub fn ranking(comparison: &Comparison) -> Ranking {
     Ranking {
         by: ranked_by(comparison.ranked_by),
@@ -55,12 +55,12 @@ pub fn ranking(comparison: &Comparison) -> Ranking {
     }
 }
 
-/// Cells below one another.
+/// Pads a row's cells to the column widths.
 fn line(cells: &[String]) -> String {
     let cell = |(index, (cell, (name, width))): (usize, (&String, (&str, usize)))| match index {
         0 => format!("{cell:width$}"),
         1 => format!("  {cell:width$}"),
-        // In newtons and millimetres is said what is said before.
+        // The columns in N and mm belong to the percentage before them: less space between.
         _ if name.starts_with('[') => format!(" {cell:>width$}"),
         _ => format!("  {cell:>width$}"),
     };
@@ -91,7 +91,7 @@ fn cells(row: &Row) -> Vec<String> {
     .concat()
 }
 
-/// Newtons and millimetres.
+/// Rms force in N and rms position in mm.
 fn in_units(distance: Option<Distance>) -> [String; 2] {
     let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.3e}"));
     let force = distance.and_then(|distance| distance.rms_force_n);
@@ -99,7 +99,7 @@ fn in_units(distance: Option<Distance>) -> [String; 2] {
     [force, position].map(number)
 }
 
-/// The overall figure, and how many sequences could not be spared or not be predicted.
+/// The leave-one-out residual, and the number of sequences that could not be left out or predicted.
 fn left_out(row: &Row) -> String {
     let lost = row.left_out.iter().filter(|left| left.distance.is_none()).count();
     match lost {
@@ -110,7 +110,7 @@ fn left_out(row: &Row) -> String {
 
 fn ranked_by(criterion: Criterion) -> String {
     let by = match criterion {
-        Criterion::Validation => "the sequences left for validation, which no fit saw",
+        Criterion::Validation => "the validation sequences, which no fit used",
         Criterion::LeaveOneOut => "the sequences left out of the fit one at a time",
         Criterion::Fit => "the fitted sequences, where more parameters always do better",
     };
@@ -119,7 +119,7 @@ fn ranked_by(criterion: Criterion) -> String {
     )
 }
 
-/// Components without a curve, and sequences that could not be spared, with the models that this concerns.
+/// Components without a curve and sequences that could not be left out, with the models concerned.
 fn losses(comparison: &Comparison) -> String {
     let fitted: Vec<&Row> = comparison.rows.iter().filter(|row| row.failure.is_none()).collect();
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
@@ -141,7 +141,8 @@ fn losses(comparison: &Comparison) -> String {
 
 fn losses_of(row: &Row) -> Vec<String> {
     let lost = row.left_out.iter().filter(|left| !left.lost.is_empty());
-    let lost = lost.map(|left| format!("Without {} nothing shows {}", left.sequence, list(&left.lost)));
+    let lost =
+        lost.map(|left| format!("Without {}, no sequence observes {}", left.sequence, list(&left.lost)));
     let missing = (!row.missing.is_empty()).then(|| format!("Not observed: {}", list(&row.missing)));
     let failed = row.left_out.iter().filter_map(|left| {
         Some(format!("Without {}, no prediction: {}", left.sequence, left.failure.as_ref()?))

@@ -1,12 +1,12 @@
-//! What helped solves and fits along.
+//! Numerical interventions in solves and fits.
 
 use super::list::list;
 use cloth_fit::stage::interventions::Interventions;
 
-/// What helped solves and fits along, on a line; nothing where nothing did.
+/// One line with the counted interventions; empty if there were none.
 pub(super) fn interventions(interventions: &Interventions) -> String {
     match interventions.in_words()[..] {
         [] => String::new(),
-        ref words => format!("  helped along by: {}\n", list(words)),
+        ref words => format!("  interventions: {}\n", list(words)),
     }
 }

@@ -1,8 +1,8 @@
-//! Lists within a sentence.
+//! Lists in a sentence.
 
 use std::fmt::Display;
 
-/// Items with commas between them.
+/// Joins items by commas.
 pub(super) fn list(items: impl IntoIterator<Item = impl Display>) -> String {
     items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
 }

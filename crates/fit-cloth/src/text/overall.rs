@@ -1,4 +1,4 @@
-//! A whole fit in four sentences: how it went, how good, how sure, what to measure next.
+//! A whole fit in four sentences: state, residuals, uncertainty, next measurement.
 
 use super::band::half_band;
 use super::list::list;
@@ -7,22 +7,22 @@ use cloth_fit::judge::verdict::{self, Verdict, widest_band};
 use cloth_fit::stage::report::{SequenceReport, StageReport};
 use cloth_sim::material::Component;
 
-/// What a reader who knows no details should know of a fit.
+/// Summary of a fit for a reader who does not need the details.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Overall {
-    /// How far to trust it, by its worst curve.
+    /// Verdict, given by the worst curve.
     pub verdict: Verdict,
-    /// How many curves were fitted, given, not observed.
+    /// Numbers of curves fitted, given and not observed.
     pub state: String,
-    /// Residuals where they are largest.
+    /// Largest residuals.
     pub good: String,
-    /// Bands at the ends of the ranges seen.
+    /// Bands at the ends of the observed ranges.
     pub sure: String,
-    /// Where another measurement would tell most.
+    /// The most informative next measurement.
     pub next: String,
 }
 
-/// Judges a fit by its weakest parts.
+/// Summarises a fit by its weakest parts.
 pub fn overall(report: &FitReport) -> Overall {
     let observed: Vec<&StageReport> = report.last_stages().filter(|stage| stage.curve.observed).collect();
     let missing: Vec<Component> =
@@ -58,15 +58,13 @@ fn good(report: &FitReport) -> String {
         });
         valued.max_by(|a, b| a.1.total_cmp(&b.1))
     };
-    let force = worst(&|sequence| Some(sequence.force_rms? / sequence.force_largest)).map(|(name, share)| {
-        format!("Measured forces are met within {:.2} % of the largest (rms; {name})", 100.0 * share)
-    });
-    let shapes = if force.is_some() { "shapes" } else { "Measured shapes are met" };
+    let force = worst(&|sequence| Some(sequence.force_rms? / sequence.force_largest))
+        .map(|(name, share)| format!("forces {:.2} % of the largest ({name})", 100.0 * share));
     let shape = worst(&|sequence| sequence.position_rms)
-        .map(|(name, far)| format!("{shapes} within {:.2} mm (rms; {name})", 1e3 * far));
+        .map(|(name, far)| format!("shapes {:.2} mm ({name})", 1e3 * far));
     match [force, shape].into_iter().flatten().collect::<Vec<_>>().join(", ") {
         said if said.is_empty() => "Nothing was compared.".into(),
-        said => said + " where they are met worst.",
+        said => format!("Worst rms residuals: {said}."),
     }
 }
 
@@ -75,12 +73,12 @@ fn sure(observed: &[&StageReport]) -> String {
     let banded = observed.iter().filter_map(|stage| Some((stage.name(), known(stage)?)));
     let widest = banded.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, half)| {
         format!(
-            "At the ends of the ranges seen, curves are known to ± {:.1} % (95 %) or better; {name} is the least sure.",
+            "At the ends of the observed ranges, curves are known to ± {:.1} % (95 %) or better; {name} is the least certain.",
             100.0 * half
         )
     });
     let unknown = list(observed.iter().filter(|stage| known(stage).is_none()).map(|stage| stage.name()));
-    let unknown = (!unknown.is_empty()).then(|| format!("How sure these are is not known: {unknown}."));
+    let unknown = (!unknown.is_empty()).then(|| format!("Uncertainty not known: {unknown}."));
     match [widest, unknown].into_iter().flatten().collect::<Vec<_>>().join(" ") {
         said if said.is_empty() => "No curve was fitted.".into(),
         said => said,
@@ -90,7 +88,7 @@ fn sure(observed: &[&StageReport]) -> String {
 fn next(report: &FitReport, observed: &[&StageReport], missing: &[Component]) -> String {
     let failed =
         |component: &Component| report.failures.iter().any(|failure| failure.components.contains(component));
-    // A test that there is, and that tells nothing, is not asked for again.
+    // If a test exists but does not determine the curve, the same test is not suggested again.
     let unseen =
         list(missing.iter().filter(|component| report.stage(**component).is_none() && !failed(component)));
     let untold = list(missing.iter().filter(|component| report.stage(**component).is_some()));
@@ -103,10 +101,10 @@ fn next(report: &FitReport, observed: &[&StageReport], missing: &[Component]) ->
         };
         format!("more frames of {} near {place}", stage.name())
     });
-    let unseen = (!unseen.is_empty()).then(|| format!("a test that shows {unseen}"));
+    let unseen = (!unseen.is_empty()).then(|| format!("a test that observes {unseen}"));
     let untold = (!untold.is_empty()).then(|| format!("other frames, or another model, for {untold}"));
     match [unseen, untold, frames].into_iter().flatten().collect::<Vec<_>>().join(", then ") {
-        said if said.is_empty() => "What would tell most is not known.".into(),
-        said => format!("What would tell most: {said}."),
+        said if said.is_empty() => "No measurement to suggest.".into(),
+        said => format!("Most informative next: {said}."),
     }
 }

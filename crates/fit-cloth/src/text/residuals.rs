@@ -1,10 +1,10 @@
-//! How every sequence was met.
+//! Residuals of every sequence.
 
 use super::number::{cell, percent};
 use cloth_fit::incremental::FitReport;
 use std::fmt::Write;
 
-/// One row a sequence.
+/// One row per sequence.
 pub fn residuals(report: &FitReport) -> String {
     let sequences = report.sequences();
     let width = sequences.iter().map(|(_, s)| s.name.chars().count()).max().unwrap_or(0).max(8);

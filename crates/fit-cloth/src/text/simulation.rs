@@ -1,4 +1,4 @@
-//! What came of a scene.
+//! The result of a simulation.
 
 use super::interventions::interventions;
 use super::list::list;
@@ -10,7 +10,7 @@ use cloth_scene::simulation::{End, Simulation};
 use cloth_sim::descent::Descent;
 use std::fmt::Write;
 
-/// What was simulated, its measures and energies, and a verdict.
+/// Scene and material, energies, forces and measures, and a verdict.
 pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -> String {
     let mut text = format!(
         "{} of {} ({}, {} vertices)\ncomponents: {}\n\n",
@@ -24,7 +24,7 @@ pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -
         let energies = row.energies;
         let _ = writeln!(
             text,
-            "after {:.3} s, in J: kinetic {:.3e}, elastic {:.3e}, weight {:.3e}; since the start: damping took {:.3e}, the air did {:.3e}, the integrator lost {:.3e}",
+            "after {:.3} s, in J: kinetic {:.3e}, elastic {:.3e}, weight {:.3e}; since the start: dissipated by damping {:.3e}, work of the air {:.3e}, lost by the integrator {:.3e}",
             row.time,
             energies.kinetic,
             energies.elastic,
@@ -44,7 +44,7 @@ pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -
 
 fn droop(droop: &Droop) -> String {
     let mut text = format!(
-        "lowest point: {:.2} mm below what holds it, {:.2} mm as laid out",
+        "lowest point: {:.2} mm below the held nodes, {:.2} mm as laid out",
         1e3 * droop.depth_m,
         1e3 * droop.flat_depth_m
     );
@@ -54,7 +54,7 @@ fn droop(droop: &Droop) -> String {
     if let Some((edge, middle)) = droop.bottom_edge_sinks_m.zip(droop.bottom_middle_sinks_m) {
         let _ = write!(
             text,
-            "\nbottom edge: sinks by {:.2} mm on the mean, its middle by {:.2} mm",
+            "\nbottom edge: sinks by {:.2} mm on average, its middle by {:.2} mm",
             1e3 * edge,
             1e3 * middle
         );
@@ -78,7 +78,7 @@ fn verdict(simulation: &Simulation) -> String {
     match simulation.end {
         End::Rest(descent) => at_rest(&descent),
         End::Motion { steps, stopped: Some(step), .. } => format!(
-            "NOT converged: step {step} led to numbers that are not finite; the last good state, after {steps} steps, is the last frame. A shorter step_s may help."
+            "NOT converged: step {step} gave non-finite numbers; the last good state, after {steps} steps, is the last frame. A shorter step_s may help."
         ),
         End::Motion { steps, not_converged: 0, .. } => format!("Converged: all {steps} steps."),
         End::Motion { steps, not_converged, .. } => format!(
@@ -91,11 +91,11 @@ fn at_rest(descent: &Descent) -> String {
     let found = descent.equilibrium;
     let state = if found.converged() { "At rest, and stable" } else { "NOT converged" };
     let mut text = format!(
-        "{state}: {} after {} steps of descent; the largest imbalance of a node is {:.1e} N, {:.1e} N are allowed.",
+        "{state}: {} after {} steps of descent; the largest imbalance of a node is {:.1e} N (allowed: {:.1e} N).",
         found.status, descent.steps, found.imbalance, found.tolerance
     );
     if found.escaped {
-        text += " An unstable balance was met and left: another shape is as good.";
+        text += " An unstable equilibrium was met and left: another shape is equally possible.";
     }
     text
 }

@@ -1,4 +1,4 @@
-//! One stage: what it used, how it went, the curve.
+//! One stage: its basis, its course, its curve.
 
 use super::band::NO_KNOWLEDGE;
 use super::interventions::interventions;
@@ -10,21 +10,21 @@ use cloth_fit::stage::report::StageReport;
 use cloth_sim::strain_measure::StrainMeasure;
 use std::fmt::Write;
 
-/// What a stage used and how it went, a line each; without the time, which is not the same twice.
+/// Basis and course of a stage, line by line, without the run time, which differs between runs.
 pub fn course(stage: &StageReport) -> Vec<String> {
     let words =
         [basis(stage), levels(stage), counted(stage, ""), interventions(&stage.interventions)].concat();
     words.lines().skip(1).map(|line| line.trim().into()).collect()
 }
 
-/// A stage of the fit; with all its iterations, if `verbose`.
+/// A stage of the fit, with all iterations if `verbose`.
 pub fn stage(stage: &StageReport, verbose: bool) -> String {
     let growth = if verbose { iterations(stage) } else { levels(stage) };
     let helped = interventions(&stage.interventions);
     [basis(stage), growth, spent(stage), helped, curve(stage)].concat()
 }
 
-/// What was fitted to what, and what was taken as known.
+/// The sequences fitted to and the curves taken as known.
 fn basis(stage: &StageReport) -> String {
     let pass = if stage.pass > 1 { ", second pass" } else { "" };
     let compared = match stage.objective {
@@ -50,7 +50,7 @@ fn basis(stage: &StageReport) -> String {
     text
 }
 
-/// The residual of every number of control points.
+/// The residual for every number of control points.
 fn levels(stage: &StageReport) -> String {
     let (name, factor) = unit(stage);
     let levels = list(stage.levels.iter().map(|level| {
@@ -60,7 +60,7 @@ fn levels(stage: &StageReport) -> String {
     format!("  rms [{name}] by control points: {levels}\n")
 }
 
-/// The iterations, level by level.
+/// The iterations for every number of control points.
 fn iterations(stage: &StageReport) -> String {
     let (name, factor) = unit(stage);
     let rms = format!("rms [{name}]");
@@ -86,7 +86,7 @@ fn iterations(stage: &StageReport) -> String {
     text
 }
 
-/// Work and time.
+/// Work and run time.
 fn spent(stage: &StageReport) -> String {
     counted(stage, &format!(", {:.2} s", stage.seconds))
 }
@@ -99,11 +99,11 @@ fn counted(stage: &StageReport, time: &str) -> String {
     )
 }
 
-/// The control points with their uncertainty.
+/// The control points with their uncertainties.
 fn curve(stage: &StageReport) -> String {
     let report = &stage.curve;
     if !report.observed {
-        return "  NOT observed: a curve twice as stiff would meet the measurements as well\n".into();
+        return "  NOT observed: a curve twice as stiff would fit the measurements as well\n".into();
     }
     let [strain, stiffness, stress] = match stage.model.strain_measure(stage.components[0]) {
         StrainMeasure::Hinge | StrainMeasure::RingTwo => ["curvature [1/m]", "rigidity [N m]", "moment [N]"],
@@ -127,13 +127,13 @@ fn curve(stage: &StageReport) -> String {
         );
     }
     for i in &report.unseen {
-        let _ = writeln!(text, "  no frame sees control point {}", i + 1);
+        let _ = writeln!(text, "  no frame observes control point {}", i + 1);
     }
     for (i, j, correlation) in report.correlated() {
         let _ = writeln!(text, "  correlated: control points {} and {} ({correlation:.3})", i + 1, j + 1);
     }
     if report.active_constraints > 0 {
-        let _ = writeln!(text, "  {} stability constraints hold the curve", report.active_constraints);
+        let _ = writeln!(text, "  {} stability constraints are active", report.active_constraints);
     }
     text
 }

@@ -1,4 +1,4 @@
-//! A study: tables for the terminal, and the page `study.md`.
+//! A study: tables for the terminal and the page `study.md`.
 
 mod digits;
 mod equilibria;
@@ -19,7 +19,7 @@ use cloth_study::solver::Solver;
 use cloth_study::study::Study;
 use std::fmt::Write;
 
-/// All tables, and the verdict.
+/// All tables, then the verdict.
 pub fn study(study: &Study) -> String {
     let mut text = String::new();
     for section in sections(study) {
@@ -28,7 +28,7 @@ pub fn study(study: &Study) -> String {
     text + &verdict(study)
 }
 
-/// The page: tables with a sentence each, and figures.
+/// The page: the verdict, and the tables with explanations and figures.
 pub fn study_page(study: &Study) -> String {
     let mut text = format!("# Error and run time: {}\n\n{}", study.fabric, verdict(study));
     for section in sections(study) {
@@ -40,7 +40,7 @@ pub fn study_page(study: &Study) -> String {
     text
 }
 
-/// What the tables come to, in words.
+/// The conclusions from the tables, as sentences.
 fn verdict(study: &Study) -> String {
     let sentences = [fits(study), published(study), orders(study), failures(study)];
     sentences.into_iter().flatten().map(|sentence| sentence + "\n").collect()
@@ -72,11 +72,11 @@ fn fits(study: &Study) -> Option<String> {
     })
 }
 
-/// The default against the published method, on the finest grid that both were run on.
+/// The default method against the published one, on the finest grid that both ran on.
 fn published(study: &Study) -> Option<String> {
     let nodes = study.finest_fit()?;
     let of = |solver| {
-        // The first is the one with all points and frames.
+        // The first run is the one with all points and frames.
         let mut runs = study.part(Part::Fit);
         runs.find(|run| run.solver == solver && run.model == Model::Stvk && run.nodes == nodes)
     };

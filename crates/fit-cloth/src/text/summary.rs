@@ -1,4 +1,4 @@
-//! All curves at a glance.
+//! A summary of all curves.
 
 use super::band::half_band;
 use super::list::list;
@@ -8,7 +8,7 @@ use cloth_fit::stage::report::{Sample, StageReport};
 use cloth_sim::material::Component;
 use std::fmt::Write;
 
-/// One row a component: its curve at the end of the range that was seen.
+/// One row per component: its curve at the end of the observed range.
 pub fn summary(report: &FitReport) -> String {
     let mut text = String::from(
         "curve          points  at the end of the range           ± 95 %  range seen             observed by\n",
@@ -20,7 +20,7 @@ pub fn summary(report: &FitReport) -> String {
     text
 }
 
-/// The same in cells: component, points, value at the end, band, range, sequences; what does not apply is empty.
+/// The same as cells: component, points, value at the end, band, range, sequences; cells that do not apply are empty.
 pub fn summary_rows(report: &FitReport) -> Vec<[String; 6]> {
     let row = |component| match report.stage(component).filter(|stage| stage.curve.observed) {
         Some(stage) => row(component, stage),
@@ -49,14 +49,14 @@ fn band(sample: &Sample) -> String {
     half_band(sample).map_or("not known".into(), |half| format!("{:.1} %", 100.0 * half))
 }
 
-/// That the published method was used, and what that does to bending.
+/// States that the published method was used, and its bias in bending.
 pub fn as_published(report: &FitReport) -> String {
     let bends = report.stages.iter().any(|stage| stage.components[0].is_bending());
-    let bias = "; held only where it lies on the table, a sheet comes out a third or more too stiff";
+    let bias = "; bending comes out a third or more too stiff, since the sheet is held only where it lies on the table";
     format!("{}, fitted as published (Miguel et al. 2012){}", report.model, if bends { bias } else { "" })
 }
 
-/// Why a component has no curve; `None` if it has one.
+/// The reason why a component has no curve; `None` if it has one.
 pub fn missing(report: &FitReport, component: Component) -> Option<String> {
     if report.knowledge.knows(component) {
         return None;
@@ -64,11 +64,11 @@ pub fn missing(report: &FitReport, component: Component) -> Option<String> {
     let failed = report.failures.iter().any(|failure| failure.components.contains(&component));
     Some(match report.stage(component) {
         None if failed => format!("{component} has no curve: its stage failed"),
-        None => format!("{component} is not observed: no sequence shows it; it has no curve"),
+        None => format!("{component} is not observed by any sequence; it has no curve"),
         Some(stage) => {
             let names = list(stage.sequences.iter().map(|sequence| &sequence.name));
             format!(
-                "{component} is not observed: the measurements of {names} do not tell its scale; it has no curve"
+                "{component} is not observed: the measurements of {names} do not determine its scale; it has no curve"
             )
         }
     })

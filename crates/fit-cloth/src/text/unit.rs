@@ -3,7 +3,7 @@
 use cloth_fit::equilibria::Objective;
 use cloth_fit::stage::report::StageReport;
 
-/// In what a stage's residuals are shown: the unit, and how many of it make one of SI.
+/// Unit of a stage's residuals in the output, and the factor from SI to it.
 pub(super) fn unit(stage: &StageReport) -> (&'static str, f64) {
     match stage.objective {
         Objective::Forces => ("N", 1.0),

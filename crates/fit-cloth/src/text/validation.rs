@@ -1,4 +1,4 @@
-//! How curves meet tests that their fit did not see.
+//! Validation: curves against tests that their fit did not use.
 
 use super::interventions::interventions;
 use super::list::list;
@@ -10,7 +10,7 @@ use cloth_sim::material::Component;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// One row a sequence, frames of several equilibria, and a verdict.
+/// One row per sequence, frames with several equilibria, and a verdict.
 pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) -> String {
     let (of, on) = (&material.fabric.name, &set.fabric.name);
     let mut text = format!("curves of {of} ({}) on tests of {on}\n", material.model);
@@ -29,7 +29,7 @@ pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Va
     format!("{text}\n{helped}{}\n", verdict(material, validation))
 }
 
-/// A warning where springs that bend were tried on another grid than any of their fit's: their moments belong to it.
+/// A warning if bending springs are simulated on a grid that their fit did not use: their moments depend on the grid.
 pub fn other_grid(material: &MaterialFile, validation: &Validation) -> Option<String> {
     let bends = |(component, entry): (&Component, &CurveEntry)| component.is_bending() && entry.observed;
     if !material.model.is_of_springs() || !material.curves.iter().any(bends) {
@@ -44,7 +44,7 @@ pub fn other_grid(material: &MaterialFile, validation: &Validation) -> Option<St
     let size = |[columns, rows]: &[usize; 2]| format!("{columns}x{rows}");
     (!others.is_empty() && !fitted.is_empty()).then(|| {
         format!(
-            "bending of springs belongs to the grid of its fit, {}; --nodes tries {} on it",
+            "bending curves of springs hold only on the grid of their fit, {}; simulate {} on it with --nodes",
             list(fitted.iter().map(size)),
             list(&others)
         )
@@ -87,25 +87,25 @@ fn table(validation: &Validation) -> String {
     text
 }
 
-/// How well the curves do, in one sentence.
+/// The result in one sentence.
 fn verdict(material: &MaterialFile, validation: &Validation) -> String {
     let met = list(validation.sequences.iter().filter_map(meets));
     let lost: Vec<&str> = validation.lost().into_iter().map(|(name, _)| name).collect();
-    let mut text = format!("Root mean square, the curves of {}", material.fabric.name);
+    let mut text = format!("Rms: the curves of {}", material.fabric.name);
     let _ = match met.is_empty() {
-        true => write!(text, " meet nothing that was measured"),
-        false => write!(text, " meet {met}"),
+        true => write!(text, " have no measurement to compare with"),
+        false => write!(text, " reproduce {met}"),
     };
     if validation.sequences.iter().any(|sequence| !sequence.report.multi_stable.is_empty()) {
-        let _ = write!(text, "; positions of frames with several equilibria do not count");
+        let _ = write!(text, "; positions of frames with several equilibria are not counted");
     }
     if !lost.is_empty() {
-        let _ = write!(text, "; of {} there is no equilibrium to compare", list(lost));
+        let _ = write!(text, "; no equilibrium to compare with in {}", list(lost));
     }
     text + "."
 }
 
-/// What says most of a sequence: its measure, else its forces, else its shapes.
+/// The residual of a sequence's measure, else of its forces, else of its shapes.
 fn meets(sequence: &Validated) -> Option<String> {
     let report = &sequence.report;
     let name = &report.name;

@@ -1,4 +1,4 @@
-//! A stage in one sentence.
+//! The verdict on a stage or a fit.
 
 use super::band::sure;
 use super::list::list;
@@ -10,14 +10,14 @@ use cloth_fit::judge::verdict::{Verdict, of_fit, of_stage, widest_band};
 use cloth_fit::stage::report::{SequenceReport, StageReport};
 use std::fmt::Write;
 
-/// How far to trust it and why, what limits it, what to measure next; as a footnote, why the fit stopped.
+/// Grade and reasons, limits, and the next measurement, followed by the reason why the fit stopped.
 ///
-/// * `notices` — what was noticed of the measurements
+/// * `notices` — contradictions found in the measurements
 pub fn verdict(stage: &StageReport, notices: &[Notice]) -> String {
     let Verdict { grade, reasons } = of_stage(stage, notices);
     let mut said = vec![limit(stage)];
     said.extend(next(stage, &reasons));
-    // Levels that did not pay come after the one that was kept.
+    // Levels that brought no improvement come after the one that was kept.
     let kept = stage.levels.iter().find(|level| level.points == stage.curve.curve.len());
     let end = kept.map_or("", |level| &level.status[..]);
     let converged = if stage.converged { "converged" } else { "NOT converged" };
@@ -31,14 +31,14 @@ pub fn verdict(stage: &StageReport, notices: &[Notice]) -> String {
     )
 }
 
-/// How sure a curve is that nothing is to be said against.
+/// The uncertainty and range of a curve without reservations.
 fn trusted(stage: &StageReport) -> String {
     let sure = widest_band(stage).map_or(String::new(), |(_, share)| format!(" to ± {}", sure(share)));
     let [stress, unit] = if stage.components[0].is_bending() { ["moment", " 1/m"] } else { ["stress", ""] };
     format!("known{sure} of its largest {stress} from {}{unit}", seen(stage))
 }
 
-/// A whole fit in a line: the worst grade, and the curves that have it.
+/// A whole fit in one line: the worst grade, and the reasons for it.
 pub fn verdict_of_fit(report: &FitReport) -> String {
     let Verdict { grade, reasons } = of_fit(report);
     match reasons.is_empty() {
@@ -47,7 +47,7 @@ pub fn verdict_of_fit(report: &FitReport) -> String {
     }
 }
 
-/// What is left beyond the noise.
+/// The misfit beyond the noise.
 fn limit(stage: &StageReport) -> String {
     let (name, factor) = unit(stage);
     let compared = if name == "N" { "forces" } else { "shapes" };
@@ -56,30 +56,27 @@ fn limit(stage: &StageReport) -> String {
     let noise = format!("the {origin} noise of {:.2e} {name}", scatter.noise);
     if scatter.misfit > 0.0 {
         format!(
-            "it misses the {compared} by {:.2e} {name} beyond {noise} (hysteresis, too few control points, or another law than the model's), and the band includes that",
+            "it misses the {compared} by {:.2e} {name} beyond {noise} (hysteresis, too few control points, or a law that the model cannot follow); the band includes this misfit",
             scatter.misfit
         )
     } else {
-        format!("nothing is left beyond {noise}")
+        format!("no misfit beyond {noise}")
     }
 }
 
-/// What to measure next; nothing where a reason for the grade says so already.
+/// The next measurement to make; `None` if a reason for the grade says so already.
 fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
     let odd = stage.sequences.iter().filter(|sequence| !sequence.outliers.is_empty());
     let odd: Vec<String> = odd.map(|s| format!("frame {} of {}", some(&s.outliers), s.name)).collect();
     if !odd.is_empty() {
         let robust = if stage.interventions.residuals_bent == 0 { ", or fit with --robust" } else { "" };
-        return Some(format!(
-            "far off the rest: {}: look at them and their neighbours first{robust}",
-            list(odd)
-        ));
+        return Some(format!("outliers: {}: check them and their neighbours first{robust}", list(odd)));
     }
     if !stage.curve.observed {
-        return Some("it takes another test to see this curve".into());
+        return Some("another test is needed to observe this curve".into());
     }
     let Some((place, share)) = widest_band(stage) else {
-        return Some("too few frames to judge all of the curve by: measure more".into());
+        return Some("too few frames to judge the whole curve: measure more".into());
     };
     let [at, of] = match stage.components[0].is_bending() {
         true => [format!("curvature {place:.2} 1/m"), "moment".into()],
@@ -92,22 +89,19 @@ fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
     reasons.is_empty().then_some(said)
 }
 
-/// Frames that take no part, and frames whose shapes tell little.
+/// Skipped frames, and frames whose positions are ambiguous.
 fn oddities(stage: &StageReport) -> String {
     let mut text = String::new();
     for dropped in &stage.dropped {
-        let _ = write!(
-            text,
-            " Frame {} of {} takes no part: {}.",
-            dropped.frame, dropped.sequence, dropped.status
-        );
+        let _ =
+            write!(text, " Frame {} of {} is skipped: {}.", dropped.frame, dropped.sequence, dropped.status);
     }
     for sequence in &stage.sequences {
         let SequenceReport { name, multi_stable, .. } = sequence;
         if !multi_stable.is_empty() {
             let _ = write!(
                 text,
-                " Frame {} of {name} may have several equilibria; a position there tells little.",
+                " Frame {} of {name} may have several equilibria; positions there carry little information.",
                 some(multi_stable)
             );
         }
@@ -115,7 +109,7 @@ fn oddities(stage: &StageReport) -> String {
     text
 }
 
-/// The first few frames.
+/// The first eight frames.
 fn some(frames: &[usize]) -> String {
     let more = if frames.len() > 8 { " and others" } else { "" };
     list(frames.iter().take(8)) + more

@@ -1,11 +1,11 @@
-//! A figure as its reader sees it: elements, texts and where they stand.
+//! An SVG figure: its elements, and its texts with their positions.
 
 #![allow(clippy::unwrap_used, reason = "a figure that cannot be read has failed")]
 
 use roxmltree::{Document, Node};
 use std::path::Path;
 
-/// Attributes that are numbers, or pairs of them.
+/// Attributes that hold numbers or pairs of numbers.
 const NUMBERS: [&str; 17] = [
     "x",
     "y",
@@ -32,7 +32,7 @@ pub(crate) struct Figure {
     pub(crate) svg: String,
 }
 
-/// A line of text and its box: left, top, right, bottom.
+/// A line of text and its bounding box: left, top, right, bottom.
 #[derive(Debug, Clone)]
 pub(crate) struct Text {
     pub(crate) content: String,
@@ -46,7 +46,7 @@ impl Figure {
         Self { name, svg }
     }
 
-    /// How many elements have a tag and all these attributes.
+    /// Number of elements with a tag and all these attributes.
     pub(crate) fn count(&self, tag: &str, attributes: &[(&str, &str)]) -> usize {
         let document = Document::parse(&self.svg).unwrap();
         let has =
@@ -54,7 +54,7 @@ impl Figure {
         document.descendants().filter(|node| node.has_tag_name(tag) || local(node) == tag).filter(has).count()
     }
 
-    /// From where to where along x each line of a colour and width goes, in pixels.
+    /// Extent along x of every line of a colour and width, in pixels.
     pub(crate) fn spans(&self, colour: &str, width: &str) -> Vec<[f64; 2]> {
         let document = Document::parse(&self.svg).unwrap();
         let is_one = |node: &Node<'_, '_>| {
@@ -75,14 +75,14 @@ impl Figure {
         document.descendants().filter(|node| local(node) == "text").map(|node| text(&node)).collect()
     }
 
-    /// Lines of text that are asked for and not there.
+    /// Wanted lines of text that are missing.
     pub(crate) fn missing(&self, wanted: &[&str]) -> Vec<String> {
         let texts = self.texts();
         let is_missing = |wanted: &&&str| texts.iter().all(|text| text.content != **wanted);
         wanted.iter().filter(is_missing).map(|text| format!("{}: no \"{text}\"", self.name)).collect()
     }
 
-    /// Whatever no figure may have.
+    /// Faults that no figure may have.
     pub(crate) fn faults(&self) -> Vec<String> {
         let document = match Document::parse(&self.svg) {
             Ok(document) => document,
@@ -149,14 +149,14 @@ fn local<'d>(node: &Node<'d, '_>) -> &'d str {
     node.tag_name().name()
 }
 
-/// Numbers among letters, brackets and commas; `None` if one of them is none.
+/// The numbers between letters, brackets and commas; `None` if one is invalid.
 fn numbers(value: &str) -> Option<Vec<f64>> {
     let inner = value.trim_start_matches("rotate(").trim_end_matches(')');
     let parts = inner.split([' ', ',']).filter(|part| !part.is_empty());
     parts.map(|part| part.parse().ok().filter(|number: &f64| number.is_finite())).collect()
 }
 
-/// The box of a text: 0.6 of its size a character, of which the height is one size; see the attributes of each anchor.
+/// Bounding box of a text: per character 0.6 of the font size wide and one font size high, placed by its anchor.
 fn text(node: &Node<'_, '_>) -> Text {
     let content = node.text().unwrap_or_default().trim().to_string();
     let number =
@@ -175,7 +175,7 @@ fn text(node: &Node<'_, '_>) -> Text {
     };
     let (to, below) = (from + length, above + size);
     let edges = match node.attribute("transform") {
-        // Upwards.
+        // Reads upwards.
         Some(turn) if turn.starts_with("rotate(270") => [x + above, y - to, x + below, y - from],
         Some(turn) => panic!("{turn}"),
         None => [x + from, y + above, x + to, y + below],

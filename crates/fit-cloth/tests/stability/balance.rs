@@ -1,4 +1,4 @@
-//! Whether a state is an equilibrium, judged without the solver's own account of it.
+//! An independent judge of equilibria, which does not rely on the solver's status.
 
 use crate::table::Row;
 use cloth_sim::cloth::{Cloth, ForceScale};
@@ -8,16 +8,16 @@ use cloth_sim::samples::Sample;
 use nalgebra::Vector3;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
-/// What a balance is measured by.
+/// The measure of an equilibrium and its limit.
 pub(crate) const IMBALANCE: (&str, f64) = ("imbalance/tolerance", 1.0);
 
-/// A row of equilibria.
+/// A row whose runs are equilibria.
 pub(crate) fn row(case: u8, condition: impl Into<String>) -> Row {
     Row::measured(case, condition, IMBALANCE.0, IMBALANCE.1)
 }
 
-/// Solves a sample from its start: a run of the row, which survives if the status says that it has converged and the forces
-/// say so too. Returns how it ended, and where.
+/// Solves a sample from its start as a run of the row; it survives if both the status and the forces say that it has
+/// converged. Returns that, and the final state.
 pub(crate) fn solve(row: &mut Row, sample: &Sample, settings: &Settings, input: &str) -> (bool, Vec<f64>) {
     let cloth = sample.cloth().unwrap();
     let mut x = sample.start.clone();
@@ -25,9 +25,9 @@ pub(crate) fn solve(row: &mut Row, sample: &Sample, settings: &Settings, input: 
     (judge(row, &cloth, sample, &x, &found, Ok(()), input), x)
 }
 
-/// Judges an equilibrium: a run of the row.
+/// Judges an equilibrium as a run of the row.
 ///
-/// * `also` — what else must hold of the state
+/// * `also` — a further condition on the state
 pub(crate) fn judge(
     row: &mut Row,
     cloth: &Cloth,
@@ -50,8 +50,8 @@ pub(crate) fn judge(
     row.measure(imbalance(cloth, sample, x), || input.to_string())
 }
 
-/// Largest force on a free node over what it may be: a millionth of the typical force or weight at a node, or a hundred times
-/// what rounding the coordinates makes of it.
+/// Largest force on a free node over its limit: a millionth of the typical force or weight at a node, or a hundred
+/// times the error from rounding the coordinates.
 pub(crate) fn imbalance(cloth: &Cloth, sample: &Sample, x: &[f64]) -> f64 {
     let (forces, scale) = forces(cloth, &sample.curves, x);
     let free: Vec<usize> = (0..cloth.nodes()).filter(|&node| is_free(sample, node)).collect();
@@ -63,8 +63,8 @@ pub(crate) fn imbalance(cloth: &Cloth, sample: &Sample, x: &[f64]) -> f64 {
     if largest == 0.0 { 0.0 } else { largest / asked }
 }
 
-/// The largest change of a force when every coordinate is off by one machine epsilon of the largest, one way or the other;
-/// and of the sum at a node, by as much of its terms.
+/// Rounding error of a force: its largest change when every coordinate is off by one machine epsilon of the largest
+/// coordinate, in a random direction, plus one epsilon of the magnitude of the terms summed at a node.
 fn rounding(cloth: &Cloth, sample: &Sample, x: &[f64], forces: &[Vector3<f64>], free: &[usize]) -> f64 {
     let mut rng = StdRng::seed_from_u64(1);
     let unit = f64::EPSILON * x.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
@@ -73,7 +73,7 @@ fn rounding(cloth: &Cloth, sample: &Sample, x: &[f64], forces: &[Vector3<f64>], 
         let mut moved = x.to_vec();
         for &node in free {
             for i in 0..if sample.planar { 2 } else { 3 } {
-                // By more than the coordinate's own last digit, or nothing would move: the change is linear.
+                // Larger steps than the coordinate's own rounding, or nothing would move; the change is linear.
                 moved[3 * node + i] += 1e3 * unit * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
             }
         }
@@ -98,7 +98,7 @@ fn is_free(sample: &Sample, node: usize) -> bool {
     !sample.held.iter().any(|held| held.node == node)
 }
 
-/// The larger of two numbers; a NaN is larger than any.
+/// The larger of two numbers; NaN is larger than any number.
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b <= a { a } else { b }
 }

@@ -1,4 +1,4 @@
-//! Cases 7 to 9: what has no length, hinges that are flat or folded flat, wings without height.
+//! Cases 7 to 9: cells of zero length, hinges that are flat or folded flat, wings without height.
 
 use crate::balance;
 use crate::elements::MEMBRANE;
@@ -15,8 +15,8 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// A sheet of which a row or column of cells has no length: energy, forces and stiffness are finite, and so is what a solve
-/// makes of it.
+/// A sheet with a row or column of cells of zero length: energy, forces and stiffness are finite, and so is the
+/// solution.
 pub(crate) fn case_07(extent: Extent) -> Vec<Row> {
     let states = Model::ALL.into_iter().flat_map(|model| [true, false].map(|planar| (model, planar)));
     states
@@ -38,7 +38,7 @@ pub(crate) fn case_07(extent: Extent) -> Vec<Row> {
 }
 
 /// * `which` — bit 0 for weft, bit 1 for warp
-/// * `length` — of what is collapsed, as a share of its rest length
+/// * `length` — of the collapsed cells, as a share of their rest length
 fn without_length(
     row: &mut Row,
     model: Model,
@@ -70,7 +70,7 @@ fn without_length(
     })
 }
 
-/// The hinge's angle is exact at zero, near ±π and between, whatever the size.
+/// The hinge angle is accurate at zero, near ±π and between, at any size.
 pub(crate) fn case_08(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for size in [1e-3, 1e-2, 1e-1, 1.0, 10.0] {
@@ -84,7 +84,7 @@ pub(crate) fn case_08(extent: Extent) -> Vec<Row> {
             rows.push(for_all(row, extent.runs(500, 20_000), inputs, |row, (angle, up, sides)| {
                 let found = folded(angle, range == "near ±π", up, size, sides);
                 let expected = if range == "near ±π" { PI - angle } else { angle };
-                // Folded flat, up and down are one.
+                // Folded flat, the sign of the angle is undefined.
                 let error = (found.abs() - expected).abs();
                 row.measure(error, || format!("{angle:e} rad, up: {up}, {sides:?}: {found:e}"))
             }));
@@ -93,7 +93,7 @@ pub(crate) fn case_08(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// The angle of a hinge whose second wing is turned by a small angle from flat, or from folded flat.
+/// The angle of a hinge whose second wing is turned by a small angle from flat or folded flat.
 fn folded(
     angle: f64,
     over: bool,
@@ -114,7 +114,7 @@ fn folded(
     hinge.strains(&x.map(|p| Vector3::from(p) * size))[0]
 }
 
-/// A wing without height is an error that names the edge, and in a state it is a status.
+/// A wing without height is an error that names the edge; in a deformed state it is a status.
 pub(crate) fn case_09(extent: Extent) -> Vec<Row> {
     let splits = [Diagonals::Forward, Diagonals::Backward, Diagonals::Alternating, Diagonals::Crossed];
     let mut rows = Vec::new();
@@ -145,7 +145,7 @@ pub(crate) fn case_09(extent: Extent) -> Vec<Row> {
             |row, (at, decade): (usize, f64)| {
                 let stretch = 10f64.powf(decade);
                 let mut sample = samples::cantilever(model, 5, stretch).unwrap();
-                // The corner of a triangle on the other: every hinge between has a wing without height.
+                // One corner of a triangle on another: every hinge between them has a wing without height.
                 let triangle = sample.mesh.triangles[at % sample.mesh.triangles.len()];
                 let place = |node: usize| 3 * node..3 * node + 3;
                 sample.start.copy_within(place(triangle[0]), 3 * triangle[2]);
@@ -161,7 +161,7 @@ pub(crate) fn case_09(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// Puts the corner of a triangle nearly onto the edge opposite, which is an inner one.
+/// Moves a corner of a triangle nearly onto the opposite edge, an inner one.
 fn collapsed(row: &mut Row, grid: Grid, at: usize, [foot, height]: [f64; 2]) -> bool {
     let mut mesh = grid.mesh().unwrap();
     let edges = mesh.edges().unwrap();
@@ -173,7 +173,7 @@ fn collapsed(row: &mut Row, grid: Grid, at: usize, [foot, height]: [f64; 2]) -> 
     let error = Hinge::all(&mesh).err();
     let named = match &error {
         Some(Error::CollapsedWing { edge: [a, b], wing }) => {
-            // Its triangle may have another inner edge, which is named as well.
+            // Another inner edge of the triangle may be named instead.
             let [p, q, r] = [*a, *b, *wing].map(|node| mesh.positions[node]);
             let flat = (q - p).cross(&(r - p)).norm() <= 1e-10 * (q - p).norm_squared();
             let words = error.as_ref().map(Error::to_string).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What the solvers need from a cold start while bending gets soft against stretch: a table and a figure for docs/stability.md.
+//! Cost of a cold start as bending gets soft against stretch: a table and figures for docs/stability.md.
 
 use crate::balance;
 use crate::chart::{Axes, log_figure};
@@ -11,7 +11,7 @@ use std::path::Path;
 
 const COLOURS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
 
-/// Nodes a side.
+/// Nodes per side.
 const NODES: usize = 13;
 
 /// One solve.
@@ -19,13 +19,14 @@ struct Solve {
     scene: Scene,
     model: Model,
     solver: &'static str,
-    /// Stretch over bending stiffness; 1/m², but of springs a number.
+    /// Stretch over bending stiffness, 1/m²; dimensionless for springs.
     ratio: f64,
     status: Status,
     factorisations: usize,
 }
 
-/// Both scenes, every model and solver, stretch over bending from 1 to 1e9; then stretch raised to 5e6 N/m at the same bending.
+/// Both scenes, every model and solver: stretch over bending from 1 to 1e9, then stretch raised to 5e6 N/m at the same
+/// bending.
 fn solves() -> Vec<Solve> {
     let mut solves = Vec::new();
     let stiffnesses = (0..=9).map(|decade| (STRETCH, STRETCH * 10f64.powi(-decade)));
@@ -69,7 +70,7 @@ impl Solve {
     }
 }
 
-/// Makes the table; writes the figures into docs/stability.
+/// Returns the table; writes the figures into docs/stability.
 pub(crate) fn report() -> String {
     let solves = solves();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/stability");
@@ -98,7 +99,7 @@ pub(crate) fn report() -> String {
     table
 }
 
-/// Factorisations against the ratio; what has not converged is a cross.
+/// Factorisations against the ratio; runs that did not converge are crosses.
 fn figure(solves: &[Solve], scene: Scene) -> String {
     let of = || solves.iter().filter(|solve| solve.scene == scene);
     let most = of().map(|solve| solve.factorisations).max().unwrap() as f64;

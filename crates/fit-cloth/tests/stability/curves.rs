@@ -1,4 +1,4 @@
-//! Cases 1, 2 and 5: curves that no cloth should have.
+//! Cases 1, 2 and 5: curves that are unstable or invalid.
 
 use crate::property::for_all;
 use crate::table::{Extent, Row};
@@ -12,8 +12,8 @@ use proptest::prelude::*;
 use std::path::Path;
 use std::process::Command;
 
-/// Strains of control points up to one between 1e-3 and 1, unevenly apart, and stiffnesses that lie so many decades apart
-/// around 100 N/m.
+/// Unevenly spaced strains of control points up to a largest between 1e-3 and 1, and stiffnesses spread over some
+/// decades around 100 N/m.
 pub(crate) fn points(count: usize, decades: f64) -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     let gaps = prop::collection::vec(0.2..1.0, count - 1);
     let stiffnesses =
@@ -43,7 +43,7 @@ pub(crate) fn largest_stiffness(curve: &StiffnessCurve) -> f64 {
     samples_of(curve).map(|strain| curve.stiffness(strain)).fold(0.0, f64::max)
 }
 
-/// k < 0 between points that are not: the check lists the interval.
+/// k < 0 between control points with k ≥ 0: the check lists the interval.
 pub(crate) fn case_01(extent: Extent) -> Vec<Row> {
     let kinds = [3, 5, 8].into_iter().flat_map(|points| [1.0, 3.0, 6.0].map(|decades| (points, decades)));
     kinds
@@ -69,7 +69,7 @@ pub(crate) fn case_01(extent: Extent) -> Vec<Row> {
         .collect()
 }
 
-/// σ′ < κ: refused by the simulator unless allowed, and the repair that the message offers makes a curve that is not.
+/// σ′ < κ: refused by the simulator unless allowed; the repair that the message offers gives an accepted curve.
 pub(crate) fn case_02(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for (count, decades) in [(3, 0.5), (5, 0.5), (5, 2.0), (8, 1.0)] {
@@ -106,7 +106,7 @@ fn refused_if_falling(row: &mut Row, points: (Vec<f64>, Vec<f64>)) -> bool {
     let refused = refuse_unstable(&curves, Path::new("material.json")).map_err(|error| error.to_string());
     let tangents = || samples_of(&curve).map(|strain| curve.response(strain).tangent);
     let (least, largest) = (tangents().fold(f64::MAX, f64::min), tangents().fold(f64::MIN, f64::max));
-    // The largest of the samples is below the largest, and so is κ.
+    // The largest sampled stiffness is a lower bound of the true maximum, and so is this κ.
     let kappa = LEAST_TANGENT * largest_stiffness(&curve);
     let holds = match &refused {
         Ok(()) => least >= kappa * (1.0 - 1e-5) && largest <= 1.1e4 * least,
@@ -126,7 +126,7 @@ fn refused_if_falling(row: &mut Row, points: (Vec<f64>, Vec<f64>)) -> bool {
     row.holds(holds, || format!("{curve:?}: {refused:?}, tangents {least} to {largest}, κ = {kappa}"))
 }
 
-/// The program on a sheet at rest without weight.
+/// Runs the program on a weightless sheet at rest.
 fn simulated_only_if_allowed(model: Model) -> Row {
     let mut row = Row::new(2, format!("{model}, the program: exit 3, with --allow-unstable 0"));
     let folder = tempfile::tempdir().unwrap();
@@ -159,10 +159,10 @@ fn simulated_only_if_allowed(model: Model) -> Row {
     row
 }
 
-/// A knot that makes no curve, and the words that name it.
+/// A defect of the knots, and the words that name it.
 type Spoilt = (&'static str, fn(&mut Vec<f64>, &mut Vec<f64>, usize), &'static str);
 
-/// Duplicate, unsorted and NaN knots: the knot is named.
+/// Duplicate, unsorted and NaN knots: the message names the knot.
 pub(crate) fn case_05(extent: Extent) -> Vec<Row> {
     let spoilt: [Spoilt; 7] = [
         ("duplicate strain", |strains, _, at| strains[at] = strains[at - 1], "not above the one before"),

@@ -1,4 +1,4 @@
-//! Case 11: every element's derivatives against finite differences, in random states.
+//! Case 11: derivatives of every element against finite differences, in random states.
 
 use crate::balance::larger;
 use crate::property::for_all;
@@ -12,16 +12,16 @@ use nalgebra::{DMatrix, Rotation3, Vector2, Vector3};
 use proptest::prelude::*;
 use proptest::strategy::BoxedStrategy;
 
-/// What an element's rest shape, its state and its place are made of.
+/// Random rest shape, state and position of an element.
 #[derive(Debug, Clone)]
 struct State {
     /// Length of an edge, 1 mm to 10 m.
     size: f64,
-    /// Of the rest shape's corners, in edges.
+    /// Offsets of the rest shape's corners, in edges.
     rest: [f64; 6],
-    /// An affine map: stretch, shear.
+    /// Affine map: stretch, shear.
     map: [f64; 2],
-    /// Of every node, in edges.
+    /// Offset of every node, in edges.
     jitter: [f64; 12],
     turn: [f64; 3],
     shift: [f64; 3],
@@ -49,7 +49,7 @@ fn states() -> BoxedStrategy<State> {
 }
 
 impl State {
-    /// Where nodes are that rest at these places, in edges.
+    /// Deformed positions of nodes from their rest positions, in edges.
     fn places<const K: usize, const N: usize>(&self, rest: [[f64; 3]; K]) -> [Point<N>; K] {
         let rotation = Rotation3::new(Vector3::from(self.turn));
         std::array::from_fn(|a| {
@@ -82,7 +82,7 @@ impl State {
         Spring { nodes, rest_length: self.size, area: self.size * self.size, component: Component::Shear }
     }
 
-    /// A hinge about an edge along x, its wings folded by any angle up to 160°.
+    /// A hinge at an edge along x, its wings folded by any angle up to 160°.
     fn hinge(&self) -> ([[f64; 3]; 4], Hinge) {
         let (sin, cos) = (14.0 * self.rest[0]).sin_cos();
         let [a, b] = [1.0 + 2.0 * self.rest[1], 1.0 + 2.0 * self.rest[2]];
@@ -103,7 +103,7 @@ impl State {
     }
 }
 
-/// Gradients to 1e-6 and Hessians to 1e-5 of their largest entry, over the states of every kind of element.
+/// Gradients to 1e-6 and Hessians to 1e-5 of their largest entry, for every kind of element.
 pub(crate) fn case_11(extent: Extent) -> Vec<Row> {
     [
         kind("stvk triangle in space", extent, |state| {
@@ -137,12 +137,12 @@ pub(crate) fn case_11(extent: Extent) -> Vec<Row> {
     .collect()
 }
 
-/// Soft constraints have a kink where a yarn has no length: differences across it are of no order.
+/// Soft constraints have a kink where a yarn has zero length: finite differences across it do not converge.
 fn has_length<const N: usize>(triangle: &Triangle, x: &[Point<N>; 3]) -> bool {
     triangle.deformation(x).iter().all(|w| w.norm() > 0.1)
 }
 
-/// Away from a collapsed wing, and from the jump of the angle at ±π.
+/// True away from a collapsed wing and from the jump of the angle at ±π.
 fn is_open(hinge: &Hinge, x: &[Point<3>; 4], size: f64) -> bool {
     let edge = x[1] - x[0];
     let height = |wing: usize| edge.cross(&(x[wing] - x[0])).norm() / edge.norm();
@@ -150,7 +150,7 @@ fn is_open(hinge: &Hinge, x: &[Point<3>; 4], size: f64) -> bool {
     height(2).min(height(3)) > 0.1 * size && edge.norm() > 0.1 * size && turn.abs() < 2.8
 }
 
-/// Two rows of one kind of element. States that have no derivative are drawn anew.
+/// The two rows of one kind of element. States without a derivative are redrawn.
 fn kind(name: &str, extent: Extent, errors: impl Fn(&State) -> Option<[f64; 2]>) -> [Row; 2] {
     [("gradient", 1e-6, 0), ("Hessian", 1e-5, 1)].map(|(what, limit, which)| {
         let row = Row::measured(11, format!("{name}: {what}"), "relative error", limit);
@@ -164,7 +164,7 @@ fn kind(name: &str, extent: Extent, errors: impl Fn(&State) -> Option<[f64; 2]>)
     })
 }
 
-/// The largest errors of gradients and of Hessians, of all strains; `None` where two nodes fall together.
+/// The largest errors of gradients and Hessians over all strains; `None` if two nodes coincide.
 fn errors<const K: usize, const N: usize, const S: usize>(
     element: &impl Element<K, N, S>,
     x: [Point<N>; K],
@@ -200,7 +200,7 @@ fn errors<const K: usize, const N: usize, const S: usize>(
         };
         let rows: Vec<f64> = DMatrix::from_fn(K * N, K * N, |i, j| of(j, i)).iter().copied().collect();
         let component = |x: &[f64]| gradients(x)[c * K * N..(c + 1) * K * N].to_vec();
-        // Where a strain is linear its Hessian is zero: compare with gradient/size.
+        // A linear strain has zero Hessian: compare with gradient/size.
         let scale = 1e-3 * gradient.iter().fold(0.0, |m: f64, g| m.max(g.abs())) / size;
         worst[1] = larger(worst[1], derivative_error(component, &rows, &stacked, h, scale));
     }

@@ -1,4 +1,4 @@
-//! Cases 6, 10 and 12: sheets that are compressed, of slender cells, or turned and far away.
+//! Cases 6, 10 and 12: sheets that are compressed, have slender cells, or are rotated and far away.
 
 use crate::balance::{self, larger};
 use crate::property::for_all;
@@ -15,13 +15,13 @@ use std::f64::consts::PI;
 pub(crate) const MEMBRANE: [Component; 3] =
     [Component::StretchWeft, Component::StretchWarp, Component::Shear];
 
-/// Compression along weft, all around, in the plane: converges, and no triangle turns over. Shear and warp are stiff enough
-/// that the yarns do not buckle.
+/// In-plane compression along weft with the border held: converges, and no triangle inverts. Shear and warp are stiff
+/// enough that the yarns do not buckle.
 pub(crate) fn case_06(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for model in Model::ALL {
         for share in [0.7, 0.4, 0.2, 0.1] {
-            // Of a compressed cell the perturbation is up to 0.6 %, on the way from rest a tenth.
+            // The perturbation is up to 0.6 % of a compressed cell, on the way from rest a tenth.
             for (way, size) in [("solved there", 1e-5), ("driven there from rest", 2e-3)] {
                 let row = balance::row(6, format!("{model}, compressed to λ = {share}, {way}"));
                 let inputs = (-3.0..9.0, 1e-3..1.0);
@@ -48,7 +48,7 @@ fn compressed(
 ) -> bool {
     let patch = |share| samples::patch(model, Matrix3x2::new(share, 0.0, 0.0, 1.0, 0.0, 0.0)).unwrap();
     let stiffnesses = [stiffness, 1e3 * stiffness, 100.0 * stiffness];
-    // Diagonal springs would buckle themselves.
+    // Diagonal springs would buckle.
     let count = if model == Model::Springs { 2 } else { 3 };
     let curves: Vec<_> = MEMBRANE.into_iter().zip(stiffnesses).take(count).collect();
     let mut sample = patch(if driven { 1.0 } else { share });
@@ -71,7 +71,7 @@ fn compressed(
     balance::judge(row, &cloth, &sample, &x, &found, also, &input)
 }
 
-/// Slender cells: the patch test to 1e-9 of the sheet's longer side, or an error that names the triangle.
+/// Slender cells: passes the patch test to 1e-9 of the sheet's longer side, or an error names the triangle.
 pub(crate) fn case_10(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for model in Model::ALL {
@@ -86,7 +86,7 @@ pub(crate) fn case_10(extent: Extent) -> Vec<Row> {
                     let ratio = 10f64.powi(-decades);
                     let long = 10f64.powf(size);
                     let [width, height] = if tall { [ratio * long, long] } else { [long, ratio * long] };
-                    // A lattice of springs is not stable in compression: it has lower states than the affine one.
+                    // A spring lattice is unstable in compression: it has states of lower energy than the affine one.
                     let least = if model == Model::Springs { 1.0 } else { 0.0 };
                     let [weft, warp] = [weft, warp].map(|stretch| f64::max(stretch, least));
                     slender(row, model, [width, height], [weft, shear, warp])
@@ -112,8 +112,8 @@ pub(crate) fn case_10(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A grid whose border is held by an affine map; its inner nodes find their places. Alike stiff either way, so that the cells
-/// alone make the problem ill-conditioned.
+/// A grid with its border held by an affine map and free inner nodes. Equally stiff in both directions, so that only
+/// the cells make the problem ill-conditioned.
 fn slender(row: &mut Row, model: Model, [width, height]: [f64; 2], [weft, shear, warp]: [f64; 3]) -> bool {
     let mesh = Grid { columns: 5, rows: 5, width, height, diagonals: Diagonals::Alternating }.mesh().unwrap();
     let curves: Vec<_> = MEMBRANE.map(|component| (component, 300.0)).into();
@@ -121,7 +121,7 @@ fn slender(row: &mut Row, model: Model, [width, height]: [f64; 2], [weft, shear,
     sample.planar = true;
     let border = |c: f64, side: f64| c == 0.0 || c > 0.999 * side;
     sample.hold(|p| (border(p.x, width) || border(p.y, height)).then_some(0));
-    // Without turning the long side, whose rounding would move the short one.
+    // Without rotating the long side: its rounding would move the short one.
     sample.place(|p| {
         let [u, v] = if width > height { [p.x + shear * p.y, warp * p.y] } else { [p.x, p.y + shear * p.x] };
         let [stretch_u, stretch_v] = if width > height { [weft, 1.0] } else { [weft, warp] };
@@ -142,7 +142,7 @@ fn slender(row: &mut Row, model: Model, [width, height]: [f64; 2], [weft, shear,
     row.measure(error / width.max(height), input)
 }
 
-/// Turned by any rotation and moved by a metre or a kilometre, a sheet has the same forces.
+/// Forces are invariant under any rotation and a translation by a metre or a kilometre.
 pub(crate) fn case_12(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for model in Model::ALL {
@@ -164,7 +164,7 @@ pub(crate) fn case_12(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// * `ratio` — membrane over bending stiffness, in the sheet's own units
+/// * `ratio` — membrane stiffness times side squared over bending stiffness
 fn moved(
     row: &mut Row,
     model: Model,

@@ -1,4 +1,4 @@
-//! Cases 20, 21, 23, 24, 26 and 27: equilibria that do not exist, are not unique, or are far away.
+//! Cases 20, 21, 23, 24, 26 and 27: equilibria that do not exist, are not unique, or are far from the start.
 
 use crate::balance::{self, larger};
 use crate::property::for_all;
@@ -13,7 +13,8 @@ use cloth_sim::samples::{self, GRAVITY, SIDE, Sample};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
-/// A rectangular sheet of 1 mm to 10 m; membrane and bending stiffness scale with its size so that it is the same cloth.
+/// A rectangular sheet of 1 mm to 10 m; membrane and bending stiffness scale with its size so that it is the same
+/// cloth.
 fn sheet(model: Model, nodes: usize, size: f64, stretch: f64, ratio: f64) -> Sample {
     let diagonals = Diagonals::Alternating;
     let mesh = Grid { columns: nodes, rows: nodes, width: size, height: size, diagonals }.mesh().unwrap();
@@ -21,7 +22,7 @@ fn sheet(model: Model, nodes: usize, size: f64, stretch: f64, ratio: f64) -> Sam
     Sample::at_rest(mesh, model, samples::fabric(model, [stretch, 0.1 * stretch, bend]).unwrap())
 }
 
-/// Nothing held, or too little.
+/// No node held, or too few.
 pub(crate) fn case_20(extent: Extent) -> Vec<Row> {
     let ways = ["nothing held", "one node on a plane", "one node on a line"];
     let rows = Model::ALL.into_iter().flat_map(|model| ways.map(|way| (model, way)));
@@ -47,7 +48,7 @@ pub(crate) fn case_20(extent: Extent) -> Vec<Row> {
     .collect()
 }
 
-/// A flat sheet in compression is balanced and not stable; it buckles to either side alike.
+/// A flat sheet in compression is balanced but unstable; it buckles symmetrically to either side.
 pub(crate) fn case_21(extent: Extent) -> Vec<Row> {
     let models = [Model::Stvk, Model::SoftConstraint];
     let states = models.into_iter().flat_map(|model| [0.01, 0.03, 0.1].map(|short| (model, short)));
@@ -80,7 +81,7 @@ fn compressed(model: Model, short: f64, stretch: f64, ratio: f64) -> Sample {
     sample
 }
 
-/// What leaves the flat state by itself, and the two states from starts on either side of it that mirror one another.
+/// The solver leaves the flat state by itself; starts on either side of it end in mirrored states.
 fn branches(row: &mut Row, sample: &Sample, input: &str) -> bool {
     let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
     let cloth = sample.cloth().unwrap();
@@ -104,7 +105,7 @@ fn branches(row: &mut Row, sample: &Sample, input: &str) -> bool {
     balance::judge(row, &cloth, sample, &up, &upper, also, input)
 }
 
-/// Ring-2 springs have no stiffness at flat: without a load that is said, under one the sheet finds its shape.
+/// Ring-2 springs have no stiffness at flat: without a load this is reported, with a load the sheet finds its shape.
 pub(crate) fn case_23(extent: Extent) -> Vec<Row> {
     let loads = [0.0, 1e-3, 1.0, 1e2, 1e4];
     loads
@@ -151,7 +152,7 @@ fn clamped(stretch: f64, ratio: f64) -> Sample {
     sample
 }
 
-/// A clip jumps by half the sheet's length in one frame, along, across and aslant: load steps bring the sheet there.
+/// A clip jumps by half the sheet's length in one frame, along, across and obliquely: load steps follow it.
 pub(crate) fn case_24(extent: Extent) -> Vec<Row> {
     let ways =
         [("along", [0.5, 0.0, 0.0]), ("aslant", [0.4, 0.3, 0.0]), ("out of the plane", [0.3, 0.1, 0.4])];
@@ -163,7 +164,7 @@ pub(crate) fn case_24(extent: Extent) -> Vec<Row> {
                     continue;
                 }
                 let row = balance::row(24, format!("{model}, {space}, {name}"));
-                // In space the weight alone stretches what is softer.
+                // In space, softer sheets are stretched by their weight alone.
                 let softest = if planar { -1.0 } else { 1.0 };
                 let inputs = (softest..6.0, 4.0..9.0);
                 rows.push(for_all(row, extent.runs(2, 100), inputs, |row, (stretch, ratio): (f64, f64)| {
@@ -185,7 +186,7 @@ fn jumps(row: &mut Row, model: Model, (planar, way): (bool, Vector3<f64>), stret
         sample.planar = true;
     } else {
         sample.gravity = Vector3::new(0.0, 0.0, -GRAVITY);
-        // Straight but for an irregularity, or springs would stay flat.
+        // A small irregularity, or springs would stay flat.
         sample.place(|p| Vector3::new(1.001 * p.x, p.y, p.z));
     }
     sample.perturb(1e-5);
@@ -205,7 +206,7 @@ fn jumps(row: &mut Row, model: Model, (planar, way): (bool, Vector3<f64>), stret
     balance::judge(row, &cloth, &sample, &x, &found, also, &input)
 }
 
-/// No load: nothing to iterate, wherever and however large the sheet is.
+/// No load: no iteration is needed, at any position and size.
 pub(crate) fn case_26(extent: Extent) -> Vec<Row> {
     let rows = Model::ALL.into_iter().flat_map(|model| [0.0, 1.0, 1e3].map(|far| (model, far)));
     rows.map(|(model, far)| {
@@ -218,7 +219,7 @@ pub(crate) fn case_26(extent: Extent) -> Vec<Row> {
             inputs,
             |row, (size, stretch, ratio, turn): (f64, f64, f64, _)| {
                 let mut sample = sheet(model, 6, 10f64.powf(size), 10f64.powf(stretch), 10f64.powf(ratio));
-                // Held along a line alone it could swing.
+                // Held along a single line it could swing.
                 let clamp = 1.5 * 10f64.powf(size) / 5.0;
                 sample.hold(|p| (p.x < clamp).then_some(0));
                 let turn = Vector3::from(turn);
@@ -228,7 +229,7 @@ pub(crate) fn case_26(extent: Extent) -> Vec<Row> {
                 let mut x = sample.start.clone();
                 let stay = Settings { escape: false, ..Settings::default() };
                 let found = Solver::new(&cloth).solve(&sample.curves, &mut x, &stay);
-                // Ring-2 springs have no stiffness at flat; far away rounding strains decide about all models.
+                // Ring-2 springs have no stiffness at flat; far away, rounding strains decide in all models.
                 let balanced = found.converged() || found.status == Status::Unstable;
                 let stable = found.converged() || model == Model::Springs || far > 0.0;
                 row.holds(balanced && stable && found.iterations == 0 && x == sample.start, || {
@@ -240,7 +241,7 @@ pub(crate) fn case_26(extent: Extent) -> Vec<Row> {
     .collect()
 }
 
-/// The iterations run out: a status, with the best state so far.
+/// Out of iterations: a status, with the best state so far.
 pub(crate) fn case_27(extent: Extent) -> Vec<Row> {
     let methods = [Method::MixedNewton, Method::LevenbergMarquardt];
     let rows = Model::ALL.into_iter().flat_map(|model| methods.map(|method| (model, method)));

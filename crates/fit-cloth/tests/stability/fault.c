@@ -1,15 +1,15 @@
-/* Counts the calls of a program that change a file system, and makes one of them go wrong: for LD_PRELOAD.
+/* Counts the calls of a program that change the file system and injects a fault at one of them; for LD_PRELOAD.
  *
- * FAULT_LOG   file to which a line a call is appended: its number, its name, its path
- * FAULT_AT    number of the call, from 1, or of the allocation
- * FAULT_MODE  what happens then:
- *   full       it and every later call that needs space fail: the disk is full
- *   once       it fails as on a full disk, later ones do not
- *   kill       SIGKILL instead of it
- *   half       of a write the first half, then SIGKILL
- *   interrupt  SIGINT, and then it
- *   allocate   SIGINT at an allocation of memory: at any moment
- * FAULT_NO_EXCHANGE  set: two folders cannot be swapped in one step
+ * FAULT_LOG   log file, one line per call: number, name, path
+ * FAULT_AT    number of the call or allocation, from 1
+ * FAULT_MODE  kind of fault:
+ *   full       this and every later call that needs space fail: the disk is full
+ *   once       only this call fails as on a full disk
+ *   kill       SIGKILL instead of the call
+ *   half       the first half of a write, then SIGKILL
+ *   interrupt  SIGINT, then the call
+ *   allocate   SIGINT at a memory allocation
+ * FAULT_NO_EXCHANGE  if set, two folders cannot be swapped in one step
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -40,7 +40,7 @@ __attribute__((constructor)) static void begin(void) {
     for (int i = 1; wanted && i < 7; i++)
         if (!strcmp(wanted, names[i])) mode = i;
     at = number ? atol(number) : 0;
-    /* By the system call itself, so that it is not counted. */
+    /* By system call, so that it is not counted. */
     if (path) log_file = syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
 }
 
@@ -50,7 +50,7 @@ __attribute__((destructor)) static void end(void) {
     if (log_file >= 0) syscall(SYS_write, log_file, line, length);
 }
 
-/* One more call; true if it must fail. `halved` is set if half of it must be done before SIGKILL. */
+/* Counts a call; returns true if it must fail. Sets `halved` if half of it must be done before SIGKILL. */
 static int fails(const char *name, const char *path, int needs_space, int needs_room, int *halved) {
     long number = ++calls;
     if (log_file >= 0) {
@@ -70,7 +70,7 @@ static int fails(const char *name, const char *path, int needs_space, int needs_
     return 0;
 }
 
-/* The path of an open regular file other than the standard ones; NULL for anything else. */
+/* Path of an open regular file other than the standard streams; NULL otherwise. */
 static const char *path_of(int file, char *buffer, size_t size) {
     struct stat state;
     char link[64];

@@ -1,4 +1,4 @@
-//! A fit that something stops: at any of its calls to the file system, or at any allocation of memory.
+//! Runs stopped by a fault: at any call to the file system or any allocation.
 
 use crate::support::full_set;
 use cloth_data::io::write_set;
@@ -12,10 +12,10 @@ use tempfile::TempDir;
 /// The program.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_fit-cloth");
 
-/// The files of a folder, by path; empty folders count.
+/// The files of a folder by path, including empty folders.
 pub(crate) type Tree = BTreeMap<PathBuf, Vec<u8>>;
 
-/// What is in a folder; `None` if there is none. Wall times, which differ from run to run, are blanked.
+/// Contents of a folder; `None` if it does not exist. Wall times, which differ between runs, are blanked.
 pub(crate) fn tree(folder: &Path) -> Option<Tree> {
     let mut tree = Tree::new();
     for entry in fs::read_dir(folder).ok()? {
@@ -62,7 +62,7 @@ fn without_key(json: &str, key: &str) -> String {
     json.lines().filter(|line| !line.trim_start().starts_with(key)).collect::<Vec<_>>().join("\n")
 }
 
-/// A page's ranking has the seconds of every row in a cell, to one digit: under load they differ.
+/// A page's ranking shows the seconds of every row to one digit, which differ under load.
 fn without_ranked_times(text: &str) -> String {
     let Some((before, ranking)) = text.split_once("\"ranking\":{") else { return text.into() };
     let is_time = |cell: &str| {
@@ -75,7 +75,7 @@ fn without_ranked_times(text: &str) -> String {
     [before, &cells.collect::<Vec<_>>().join("\"")].join("\"ranking\":{")
 }
 
-/// Names in a folder, in order.
+/// Sorted names in a folder.
 pub(crate) fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let mut names: Vec<String> =
@@ -84,23 +84,23 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A small set, `set`, in a folder.
+/// A folder with a small set in `set`.
 pub(crate) fn small_set() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     write_set(&folder.path().join("set"), &full_set()).unwrap();
     folder
 }
 
-/// What goes wrong.
+/// Kinds of fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fault {
-    /// The disk is full from a call on.
+    /// The disk is full from this call on.
     Full,
-    /// One call finds it full.
+    /// The disk is full for this call only.
     Once,
-    /// SIGKILL in the place of a call.
+    /// SIGKILL instead of a call.
     Kill,
-    /// SIGKILL when half of a write is done.
+    /// SIGKILL after half of a write.
     Half,
     /// SIGINT at a call.
     Interrupt,
@@ -120,7 +120,7 @@ impl Fault {
         }
     }
 
-    /// Whether a call of that name can go wrong so.
+    /// True if the fault applies to a call of this name.
     pub(crate) fn strikes(self, call: &str) -> bool {
         let needs_space = ["create", "write", "fsync", "mkdir"].contains(&call);
         match self {
@@ -133,16 +133,16 @@ impl Fault {
     }
 }
 
-/// What stands in the output folder before the run that is stopped.
+/// The output folder before the stopped run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Before {
-    /// Nothing.
+    /// No folder.
     Nothing,
     /// An older result.
     Older,
 }
 
-/// A run and what it did.
+/// A run and its calls.
 pub(crate) struct Run {
     pub(crate) output: Output,
     /// Name and path of every call.
@@ -163,23 +163,23 @@ impl Run {
         self.output.status.signal()
     }
 
-    /// Records written to the journal, its key included.
+    /// Records written to the journal, including its key.
     pub(crate) fn records(&self) -> usize {
         self.calls.iter().filter(|(name, path)| name == "write" && path.ends_with("/journal")).count()
     }
 }
 
-/// A command on the small set that writes into `out`, and what stops it.
+/// A command on the small set that writes `out`, and its fault injection.
 pub(crate) struct Bench {
     folder: TempDir,
     arguments: Vec<&'static str>,
     no_exchange: bool,
-    /// The exit code of a run that nothing stops: 4, if a contestant of a comparison does not converge.
+    /// Exit code of an undisturbed run: 4 if a contestant of a comparison does not converge.
     pub(crate) code: Option<i32>,
     older: Tree,
-    /// The result of a run that nothing stops.
+    /// Result of an undisturbed run.
     pub(crate) newer: Tree,
-    /// The stages, or rows, that such a run finishes.
+    /// Number of stages or rows that an undisturbed run finishes.
     pub(crate) stages: usize,
 }
 
@@ -189,7 +189,7 @@ impl Bench {
         Self::of(&["fit", "set", "--nodes", "7x7", "--threads", "1", "--out", "out"])
     }
 
-    /// A command that writes into `out`.
+    /// A command that writes `out`.
     pub(crate) fn of(arguments: &[&'static str]) -> Self {
         let folder = small_set();
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/stability/fault.c");
@@ -219,7 +219,7 @@ impl Bench {
         bench
     }
 
-    /// The same where the system cannot swap two folders in one step.
+    /// The same on a system that cannot swap two folders in one step.
     pub(crate) fn without_exchange(self) -> Self {
         Self { no_exchange: true, ..self }
     }
@@ -228,7 +228,7 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    /// The command from an output folder as it was before, with a fault at a call or allocation.
+    /// Runs the command from the given state of the output folder, with a fault at a call or allocation.
     pub(crate) fn fit(&self, before: Before, fault: Option<(Fault, usize)>) -> Run {
         let (out, work) = (self.path("out"), self.path(".out.work"));
         [&out, &work]
@@ -241,7 +241,7 @@ impl Bench {
         self.again(fault)
     }
 
-    /// The command once more, over what is there.
+    /// Runs the command again in the folder as it is.
     pub(crate) fn again(&self, fault: Option<(Fault, usize)>) -> Run {
         self.run(&self.arguments, fault)
     }
@@ -270,17 +270,17 @@ impl Bench {
         run
     }
 
-    /// What stands in the output folder.
+    /// Current contents of the output folder.
     pub(crate) fn now(&self) -> Option<Tree> {
         tree(&self.path("out"))
     }
 
-    /// What stood there.
+    /// Contents of the output folder before the run.
     pub(crate) fn then(&self, before: Before) -> Option<Tree> {
         (before == Before::Older).then(|| self.older.clone())
     }
 
-    /// Names that a run has left beside the output folder.
+    /// Names left beside the output folder.
     pub(crate) fn leftovers(&self) -> Vec<String> {
         let known = ["fault.so", "log", "older", "out", "set"];
         names(self.folder.path()).into_iter().filter(|name| !known.contains(&&name[..])).collect()

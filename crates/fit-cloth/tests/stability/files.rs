@@ -1,4 +1,4 @@
-//! Case 49: what is no file that a reader may have, and outputs that would destroy an input.
+//! Case 49: inputs that are not readable files, and outputs that would destroy an input.
 
 use crate::readers::{Place, READERS, Reader, contents};
 use crate::table::{Extent, Row};
@@ -8,7 +8,7 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What takes the place of a file.
+/// Replaces a file by something else.
 type Change = fn(&Path);
 
 pub(crate) fn case_49(_: Extent) -> Vec<Row> {
@@ -17,7 +17,7 @@ pub(crate) fn case_49(_: Extent) -> Vec<Row> {
         ("an empty file", "file: found an empty file", |path| fs::write(path, "").unwrap()),
         ("blank lines only", "", |path| fs::write(path, "\n \n\r\n").unwrap()),
         ("3 GiB", "file: found 3221225472 bytes", |path| {
-            // A sparse file: it takes no room on the disk.
+            // A sparse file, which takes no disk space.
             fs::File::options().write(true).open(path).unwrap().set_len(3 << 30).unwrap();
         }),
         ("a folder", "file: found a folder", |path| {
@@ -37,7 +37,7 @@ pub(crate) fn case_49(_: Extent) -> Vec<Row> {
         .into_iter()
         .map(|(name, found, change)| {
             let mut row = Row::new(49, format!("{name}: every file of every command"));
-            // A test does without some of its files, and a set without a test of bending.
+            // Some files of a test are optional, and so is a bending test in a set.
             let optional = |reader: &&Reader| {
                 ["forces.csv", "frames.csv", "positions.npy"].iter().any(|file| reader.file.ends_with(file))
             };
@@ -55,7 +55,7 @@ pub(crate) fn case_49(_: Extent) -> Vec<Row> {
     rows
 }
 
-/// How the message begins.
+/// Beginning of the message.
 fn start(reader: &Reader, name: &str, found: &str) -> String {
     match (reader.file, name) {
         ("set/complex-shear/frames/0001.obj", "nothing there") => {
@@ -70,7 +70,7 @@ fn start(reader: &Reader, name: &str, found: &str) -> String {
     }
 }
 
-/// A file that the user may not read. Root may read everything: then the program runs as another user.
+/// A file that the user may not read. If the suite runs as root, the program runs as another user.
 fn no_permission() -> Row {
     let place = Place::new();
     let closed = |reader: &Reader| {
@@ -109,11 +109,11 @@ fn no_permission() -> Row {
     row
 }
 
-/// A user without rights, on any Unix.
+/// The user nobody.
 const NOBODY: u32 = 65534;
 
 fn outputs_that_are_inputs() -> Vec<Row> {
-    // What lies beside the files: a former result whose files are inputs, and links.
+    // Beside the files: a previous result whose files are inputs, and links.
     let prepare = |place: &Place| {
         let at = place.path();
         symlink("weft.csv", at.join("link.csv")).unwrap();

@@ -1,4 +1,4 @@
-//! Cases 32, 33, 37 and 38: fits of measurements that say too little, whose truth lies on a bound, and from other starts.
+//! Cases 32, 33, 37 and 38: fits to insufficient measurements, with the truth on a bound, and from other starts.
 
 use crate::measured::{Uniform, overhangs};
 use crate::property::for_all;
@@ -20,7 +20,7 @@ use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::process::{Command, Stdio};
 
 pub(crate) const TRIANGLES: [Model; 2] = [Model::Stvk, Model::SoftConstraint];
-/// What uniform strain shows, and in which models its forces have a closed form.
+/// Tests in uniform strain, and the models in which their forces have a closed form.
 pub(crate) const UNIFORM: [(Kind, &[Model]); 2] =
     [(Kind::StretchWeft, &Model::ALL), (Kind::Shear, &TRIANGLES)];
 
@@ -28,7 +28,7 @@ pub(crate) fn settings(model: Model) -> Settings {
     Settings { model, nodes: Some([5, 5]), ..Settings::default() }
 }
 
-/// The only curve that a set shows, stretch, shear or bending.
+/// Fits the only curve that a set observes: stretch, shear or bending.
 pub(crate) fn fit(set: &MeasurementSet, settings: &Settings) -> Result<(FitReport, StageReport), String> {
     let known = Knowledge::default();
     let report = incremental::fit(set, &Stage::ALL, &known, settings, &mut Watch::default());
@@ -44,23 +44,23 @@ pub(crate) fn fit(set: &MeasurementSet, settings: &Settings) -> Result<(FitRepor
     Ok((report, stage))
 }
 
-/// Evenly spaced strains up to the largest, without zero.
+/// Evenly spaced strains up to the largest, excluding zero.
 pub(crate) fn up_to(largest: f64, count: usize) -> Vec<f64> {
     (1..=count).map(|i| largest * i as f64 / count as f64).collect()
 }
 
-/// The row of a curve that is nearest to a strain.
+/// The sample of a curve nearest to a strain.
 pub(crate) fn at(stage: &StageReport, strain: f64) -> &Sample {
     let off = |sample: &&Sample| (sample.strain - strain).abs();
     stage.curve.samples.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
 }
 
-/// Exponents of ten of stiffness and size: 1e-3 … 1e9 of the normal, 1 mm … 10 m.
+/// Powers of ten of stiffness and size: 1e-3 … 1e9 times normal, 1 mm … 10 m.
 pub(crate) fn scales() -> impl Strategy<Value = (f64, f64)> {
     (-3.0..9.0, -3.0..1.0)
 }
 
-/// Stiffness and size of such exponents: multiples, and metres.
+/// Stiffness multiple and size in metres from these exponents.
 pub(crate) fn scaled((stiffness, size): (f64, f64)) -> (f64, f64) {
     (10f64.powf(stiffness), 10f64.powf(size))
 }
@@ -83,7 +83,7 @@ pub(crate) fn case_32(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// Sequences taken away at random: the program ends in 0, and names every curve that nothing shows.
+/// Sequences removed at random: the program exits with 0 and names every unobserved curve.
 fn unseen_curves(model: Model, extent: Extent) -> Row {
     let row = Row::new(
         32,
@@ -114,12 +114,12 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
         let complaint = Component::ALL.into_iter().find(|&component| {
             let entry = &material.curves[&component];
             let file = folder.path().join(format!("out/curves/{component}.csv")).exists();
-            // A sheet bent along weft alone shows no diagonal: that, too, is a sequence that does not show it.
+            // A sheet bent along weft only is a sequence that does not determine the diagonal.
             let named = |text: &str| {
                 let line = text.lines().find(|line| line.contains(&format!("{component} is not observed")));
                 line.is_some_and(|line| {
-                    line.contains("no sequence shows it")
-                        || shown(component) && line.contains("do not tell its scale")
+                    line.contains("by any sequence")
+                        || shown(component) && line.contains("do not determine its scale")
                 })
             };
             let honest = match entry.observed {
@@ -133,8 +133,8 @@ fn unseen_curves(model: Model, extent: Extent) -> Row {
     })
 }
 
-/// Frames at the ends of the range only: every control point that is kept is seen by them, and the band is wider between
-/// them than where they are.
+/// Frames at the ends of the range only: they observe every control point that is kept, and the band is wider between
+/// them.
 fn unseen_range(row: &mut Row, kind: Kind, model: Model, (stiffness, side): (f64, f64), seed: u64) -> bool {
     let law = |strain: f64| stiffness * (300.0 * strain + 4000.0 * strain * strain);
     let strains = [up_to(0.01, 6), up_to(0.01, 6).iter().map(|strain| 0.19 + strain).collect()].concat();
@@ -148,7 +148,7 @@ fn unseen_range(row: &mut Row, kind: Kind, model: Model, (stiffness, side): (f64
     let curve = &stage.curve;
     let width = |strain: f64| at(&stage, strain).band.map_or(f64::NAN, |[low, high]| high - low);
     let seen = curve.rank == curve.curve.len() && curve.unseen.is_empty();
-    // Of a constant stiffness the band grows with the strain and nothing else.
+    // The band of a constant stiffness depends on strain only.
     let wide = curve.curve.len() < 3 || width(0.1) > width(0.195);
     row.holds(stage.converged && curve.observed && seen && wide, || {
         format!(
@@ -162,7 +162,7 @@ fn unseen_range(row: &mut Row, kind: Kind, model: Model, (stiffness, side): (f64
     })
 }
 
-/// A random Jacobian with columns of zeros.
+/// A random Jacobian with zero columns.
 fn unseen_points(row: &mut Row, seed: u64) -> bool {
     let mut random = StdRng::seed_from_u64(seed);
     let n = random.random_range(2..8);
@@ -185,7 +185,7 @@ fn unseen_points(row: &mut Row, seed: u64) -> bool {
     };
     let covariance = Covariance::new(&jacobian, &scatter);
     let deviations = covariance.standard_deviations();
-    // What is seen, alone: (JᵀJ)⁻¹.
+    // Covariance of the observed unknowns: (JᵀJ)⁻¹.
     let columns: Vec<_> = (0..n).filter(|&j| !hidden[j]).map(|j| jacobian.column(j).into_owned()).collect();
     let reduced = (!columns.is_empty()).then(|| DMatrix::from_columns(&columns));
     let inverse = reduced.and_then(|reduced| reduced.tr_mul(&reduced).try_inverse());
@@ -239,7 +239,7 @@ pub(crate) fn case_33(extent: Extent) -> Vec<Row> {
             }
         }
         for model in TRIANGLES {
-            // A coarse grid's cantilever is no elastica.
+            // A cantilever on a coarse grid differs from the elastica.
             let row = Row::measured(
                 33,
                 format!("{what}, bend-weft, {model}: the rigidity where it was bent"),
@@ -278,14 +278,14 @@ pub(crate) fn case_37(extent: Extent) -> Vec<Row> {
         for &model in models {
             for (constraints, name) in [
                 (Constraints::Stable, "constraints stable: a band from 0 up, active rows told"),
-                // Between points that are not negative a curve may fall, and then no frame has a stable equilibrium.
+                // Between non-negative control points a curve may fall, and then no frame has a stable equilibrium.
                 (
                     Constraints::ControlPoints,
                     "constraints control points: no band below 0; where not converged, said so",
                 ),
             ] {
                 let row = Row::new(37, format!("no stress up to a strain, {kind}, {model}, {name}"));
-                // Those that do not converge take long.
+                // Runs that do not converge are slow.
                 let most = if constraints == Constraints::Stable { 300 } else { 30 };
                 let runs = extent.runs(3, most);
                 let inputs = (scales(), -3.0..-1.5, any::<u64>());
@@ -298,7 +298,7 @@ pub(crate) fn case_37(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// Crimp: nothing pulls up to half of the range.
+/// Crimp: no force up to half of the range.
 fn on_a_bound(
     row: &mut Row,
     kind: Kind,
@@ -313,7 +313,7 @@ fn on_a_bound(
     let set = Uniform { kind, model, side, law: &law, strains: &up_to(0.2, 24), noise }.measure();
     let found = fit(&set, &Settings { constraints, points: 9, ..settings(model) });
     let found = found.map(|(report, stage)| {
-        // Zero itself is known exactly.
+        // Zero strain is known exactly.
         let slack = stage.curve.samples.iter().filter(|sample| sample.strain > 0.0 && sample.strain <= 0.05);
         let bands: Vec<[f64; 2]> = slack.map(|sample| sample.band.unwrap_or([f64::NAN; 2])).collect();
         let lowest = bands.iter().map(|band| band[0]).fold(f64::INFINITY, |a, b| if b >= a { a } else { b });
@@ -364,7 +364,7 @@ pub(crate) fn case_38(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// Fits from starts over three decades, against the fit from its own start.
+/// Fits from starts over three decades, against the fit from the default start.
 fn starts_row(name: &str, set: &MeasurementSet, settings: &Settings, starts: u32) -> Row {
     let mut row =
         Row::measured(38, format!("starts over three decades, {name}: one optimum"), "relative spread", 1e-3);

@@ -1,5 +1,5 @@
-//! Cases 41 to 44, and 18: text that is another than it should be. Every damage goes over every reader that it can befall,
-//! at random places; the line and the field that are told must be those of the damage.
+//! Cases 41 to 44, and 18: damaged text. Every kind of damage is tried on every reader it applies to, at random places;
+//! the reported line and field must be those of the damage.
 
 use crate::property::for_all;
 use crate::readers::{Form, Place, READERS, Reader, Refusal, TEXTS, contents, readers};
@@ -8,7 +8,7 @@ use crate::tokens::{Token, lines, numbers};
 use proptest::prelude::*;
 use std::fs;
 
-/// What a refusal should say: line, a part of the field, and a part of what was found or expected.
+/// Expected refusal: line, part of the field, and part of what was found or expected.
 pub(crate) struct Wanted<'a> {
     pub(crate) line: Option<usize>,
     pub(crate) field: &'a str,
@@ -31,7 +31,7 @@ impl Wanted<'_> {
     }
 }
 
-/// One run: a damaged file, and what should be said of it.
+/// One run: a damaged file and its expected refusal.
 pub(crate) fn refused(
     row: &mut Row,
     reader: &Reader,
@@ -55,12 +55,12 @@ pub(crate) fn program_refused(
     row.holds(outcome.is_ok(), || outcome.err().unwrap_or_default())
 }
 
-/// One of many, by a random number.
+/// Picks an element by a random number.
 pub(crate) fn pick<T>(all: &[T], random: usize) -> &T {
     &all[random % all.len()]
 }
 
-/// The line, from 1, of a byte.
+/// Line of a byte, counted from 1.
 pub(crate) fn line_of(text: &str, offset: usize) -> usize {
     1 + text[..offset].matches('\n').count()
 }
@@ -70,7 +70,7 @@ pub(crate) fn line_of(text: &str, offset: usize) -> usize {
 pub(crate) fn case_18(_: Extent) -> Vec<Row> {
     let place = Place::new();
     let by_name = |file: &str| READERS.iter().find(|reader| reader.file.ends_with(file)).unwrap();
-    // File, what is multiplied by a thousand, line and field of the refusal, and what it says.
+    // File, quantity multiplied by a thousand, line and field of the refusal, and its words.
     let lengths: [(&str, &str, Option<usize>, &str); 8] = [
         ("stretch-weft/mesh.obj", "v ", Some(10), "mesh"),
         ("stretch-weft/mesh.obj", "vt ", Some(10), "mesh"),
@@ -87,7 +87,7 @@ pub(crate) fn case_18(_: Extent) -> Vec<Row> {
             let reader = by_name(file);
             let mut row = Row::new(18, format!("millimetres for metres: {what} of {file}"));
             let mut text = reader.text().to_string();
-            // From the end on, so that places stay true.
+            // From the end, so that earlier positions stay valid.
             for token in numbers(reader).iter().rev().filter(|token| token.field == what.trim()) {
                 let value: f64 = text[token.place.clone()].parse().unwrap();
                 text = token.replaced(&text, &(1000.0 * value).to_string());
@@ -103,7 +103,7 @@ pub(crate) fn case_18(_: Extent) -> Vec<Row> {
 
 // 41 ---------------------------------------------------------------------------------------------------------------
 
-/// The harmless ways to write the same text.
+/// Harmless variants of the same text.
 fn variants(text: &str) -> [Vec<u8>; 6] {
     let mark = |text: &str| format!("\u{feff}{text}").into_bytes();
     [
@@ -193,7 +193,7 @@ pub(crate) fn case_42(extent: Extent) -> Vec<Row> {
     let row = Row::new(42, "a byte of Latin-1 at any place of any text");
     rows.push(for_all(row, extent.runs(300, 10_000), inputs, |row, (file, at, byte)| {
         let reader = pick(&texts, file);
-        // Beside a letter of two bytes it might make another letter.
+        // Beside a two-byte character it might form another character.
         let places: Vec<usize> =
             (0..reader.text().len()).filter(|&at| reader.bytes()[..at].is_ascii()).collect();
         let at = *pick(&places, at);
@@ -244,7 +244,7 @@ pub(crate) fn case_43(extent: Extent) -> Vec<Row> {
         rows.push(for_all(row, extent.runs(60, 2_000), any::<[usize; 3]>(), |row, [file, at, quotes]| {
             let reader = pick(&all, file);
             let tokens = numbers(reader);
-            // In a list it would be one number more.
+            // In a list it would be an additional number.
             let listed = |token: &Token| {
                 let line = lines(reader.text()).nth(token.line - 1).map_or("", |(_, line)| line);
                 form == Form::Json && !line.contains(':')
@@ -266,13 +266,13 @@ pub(crate) fn case_43(extent: Extent) -> Vec<Row> {
                 _ => (with_comma, &token.field[..]),
             };
             let text = token.replaced(reader.text(), &by);
-            // One comma among points is a field too many, and no more is known of it.
+            // One decimal comma in a table is one field too many, and the message cannot say more.
             let known = quoted || form == Form::Obj;
             let words = if known { "comma" } else { "" };
             refused(row, reader, &place, &text, &Wanted { line: Some(token.line), field, words })
         }));
     }
-    // In a list it would be one number more.
+    // In a list it would be an additional number.
     let single = |reader: &Reader, token: &Token| {
         let line = lines(reader.text()).nth(token.line - 1).map_or("", |(_, line)| line);
         !line.contains(['[', '{']) && reader.text()[token.place.clone()].contains('.')
@@ -295,7 +295,7 @@ pub(crate) fn case_43(extent: Extent) -> Vec<Row> {
 
 const NO_NUMBERS: [&str; 7] = ["nan", "inf", "-inf", "1e400", "-1e400", "\u{2212}1", ""];
 
-/// True where nothing in the place of a number is no damage, or shows on another line.
+/// True if an empty number is harmless, or detected on another line.
 fn may_miss(reader: &Reader, token: &Token) -> bool {
     let line = lines(reader.text()).nth(token.line - 1).map_or("", |(_, line)| line);
     match reader.form {
@@ -317,7 +317,7 @@ pub(crate) fn case_44(extent: Extent) -> Vec<Row> {
             for_all(row, extent.runs(40, 1_000), any::<[usize; 2]>(), |row, [at, damage]| {
                 let (token, by) = (pick(&tokens, at), *pick(&NO_NUMBERS, damage));
                 let by = if by.is_empty() && may_miss(reader, token) { "nan" } else { by };
-                // A vertex that was not observed: of all three coordinates, which has no line of its own.
+                // NaN in PLY marks an unobserved vertex, in all three coordinates; the mismatch has no line of its own.
                 let by = if by == "nan" && reader.file.ends_with(".ply") { "inf" } else { by };
                 let wanted = Wanted { line: Some(token.line), field: &token.field, words: "" };
                 refused(row, reader, &place, &token.replaced(reader.text(), by), &wanted)

@@ -1,11 +1,11 @@
-//! Cases 50 to 52: what stops a run, and the run that goes on from there.
+//! Cases 50 to 52: stopped runs, and runs that resume them.
 
 use crate::fault::{Before, Bench, Fault, Run, names};
 use crate::table::{Extent, Row};
 use cloth_data::store::OutputFolder;
 use std::collections::BTreeMap;
 
-/// Ctrl-C: at every call to the file system, and at allocations in between.
+/// Ctrl-C at every call to the file system, and at allocations in between.
 pub(crate) fn case_50(extent: Extent) -> Vec<Row> {
     let bench = Bench::new();
     let mut rows = at_every_call(50, &bench, extent, &[Fault::Interrupt]);
@@ -19,14 +19,14 @@ pub(crate) fn case_50(extent: Extent) -> Vec<Row> {
         interrupted += usize::from(tried.as_ref().is_ok_and(|run| run.code() == Some(130)));
         row.holds(tried.is_ok(), || format!("allocation {at} of {all}: {}", tried.err().unwrap_or_default()));
     }
-    // All but those before the program could take care of it, or after its last word.
+    // All except before the handler is installed or after the last output.
     row.holds(interrupted * 10 >= points * 9, || format!("{interrupted} of {points} ended with 130"));
     rows.push(row);
     rows.push(compare_interrupted(extent));
     rows
 }
 
-/// A comparison goes on after the models and variants that it had finished.
+/// A comparison resumes after the finished models and variants.
 fn compare_interrupted(extent: Extent) -> Row {
     let mut row = Row::new(50, "SIGINT as a comparison keeps a row, into a new folder");
     let bench = Bench::of(&["compare", "set", "--nodes", "5x5", "--points", "1", "--out", "out"]);
@@ -40,7 +40,7 @@ fn compare_interrupted(extent: Extent) -> Row {
     row
 }
 
-/// SIGKILL at every call, and in the middle of every write.
+/// SIGKILL at every call and in the middle of every write.
 pub(crate) fn case_51(extent: Extent) -> Vec<Row> {
     let mut bench = Bench::new();
     let mut rows = at_every_call(51, &bench, extent, &[Fault::Kill, Fault::Half]);
@@ -62,7 +62,7 @@ pub(crate) fn case_52(extent: Extent) -> Vec<Row> {
     at_every_call(52, &Bench::new(), extent, &[Fault::Full, Fault::Once])
 }
 
-/// A row for every kind of call and of fault, with and without an older result.
+/// A row for every kind of call and fault, with and without an older result.
 fn at_every_call(case: u8, bench: &Bench, extent: Extent, faults: &[Fault]) -> Vec<Row> {
     let mut rows = Vec::new();
     for before in [Before::Older, Before::Nothing] {
@@ -72,10 +72,10 @@ fn at_every_call(case: u8, bench: &Bench, extent: Extent, faults: &[Fault]) -> V
             .iter()
             .enumerate()
             .for_each(|(i, (name, _))| places.entry(name.clone()).or_default().push(i + 1));
-        // Without an older result all but the last step is the same.
+        // Without an older result, only the last step differs.
         places.retain(|name, _| extent == Extent::Full || before == Before::Older || name == "rename");
         for (name, places) in &places {
-            // The last rename is that of the result.
+            // The last rename puts the result in place.
             let few = &places[places.len() - 1..];
             let chosen = if extent == Extent::Full { &places[..] } else { few };
             for &fault in faults.iter().filter(|fault| fault.strikes(name)) {
@@ -111,7 +111,7 @@ fn check(holds: bool, complaint: impl FnOnce() -> String) -> Result<(), String> 
     if holds { Ok(()) } else { Err(complaint()) }
 }
 
-/// Stops a fit, looks at what is there, and runs the same command again.
+/// Stops a fit, checks what is left, and runs the same command again.
 fn stopped(bench: &Bench, before: Before, fault: Fault, at: usize) -> Result<Run, String> {
     let run = bench.fit(before, Some((fault, at)));
     let said = run.said();
@@ -140,23 +140,23 @@ fn stopped(bench: &Bench, before: Before, fault: Fault, at: usize) -> Result<Run
     })?;
     check(bench.leftovers().is_empty(), || format!("again: left {:?}", bench.leftovers()))?;
     let recalled = said
-        .split_once("has finished: ")
+        .split_once("already finished: ")
         .map_or(0, |(_, names)| names.lines().next().unwrap().split("; ").count());
     check(kept.is_none_or(|kept| kept == recalled), || format!("kept {kept:?}, recalled {recalled}"))?;
-    // A journal without a record may lack its key, too.
+    // A journal without records may lack its key, too.
     let (fitted, records) = (bench.stages - recalled, again.records());
     let is_rest = records == fitted || recalled == 0 && records == fitted + 1;
     check(is_rest, || format!("{records} records after {recalled}, of {}", bench.stages))?;
     Ok(run)
 }
 
-/// Looks at what an interrupted fit says and leaves; how many stages are kept.
+/// Checks the output and files of an interrupted fit; returns the number of stages kept.
 fn interrupted(bench: &Bench, fault: Fault, run: &Run, is_old: bool) -> Result<usize, String> {
     let (said, left) = (run.said(), bench.leftovers());
     let told = String::from_utf8_lossy(&run.output.stdout).contains("Written to out");
     match (run.code(), run.signal()) {
         (Some(130), _) => check(said.contains("interrupted"), || said.clone())?,
-        // Before the program could take care of it, or after its last word.
+        // Before the handler is installed, or after the last output.
         (_, Some(2)) if fault == Fault::Allocate => check(is_old, || "killed, with a new result".into())?,
         (code, None) if fault == Fault::Allocate && code == bench.code => {
             check(told, || "not interrupted".into())?
@@ -164,9 +164,9 @@ fn interrupted(bench: &Bench, fault: Fault, run: &Run, is_old: bool) -> Result<u
         (code, signal) => return Err(format!("ended with {code:?}, signal {signal:?}: {said}")),
     }
     check(!said.contains("the result is in") || !is_old, || said.clone())?;
-    check(!said.contains("is as it was") || is_old, || said.clone())?;
+    check(!said.contains("is unchanged") || is_old, || said.clone())?;
     let kept = said
-        .split_once("goes on after ")
+        .split_once("resumes after ")
         .map_or(0, |(_, rest)| rest.split(' ').next().unwrap().parse().unwrap());
     let expected: &[&str] = if kept > 0 { &[".out.work"] } else { &[] };
     check(left == expected, || format!("{kept} kept, left {left:?}: {said}"))?;
@@ -175,7 +175,7 @@ fn interrupted(bench: &Bench, fault: Fault, run: &Run, is_old: bool) -> Result<u
     Ok(kept)
 }
 
-/// Kills a fit between the steps of a swap: the next run that claims the folder puts the old result back.
+/// Kills a fit between the steps of a swap: the next run that claims the folder restores the old result.
 fn stopped_between(bench: &Bench, at: usize) -> Result<(), String> {
     let run = bench.fit(Before::Older, Some((Fault::Kill, at)));
     check(run.signal() == Some(9), || format!("ended with {:?}: {}", run.code(), run.said()))?;

@@ -1,5 +1,5 @@
-//! The stability suite: what can go wrong, case by case, and what must happen then. The list and the last full run stand in
-//! docs/stability.md.
+//! The stability suite: everything that can go wrong, case by case, and the required behaviour. The list and the last
+//! full run are in docs/stability.md.
 //!
 //! ```text
 //! cargo test -p fit-cloth --test stability                                            every case, few runs
@@ -52,7 +52,7 @@ mod writing;
 
 use table::{Extent, HEADER, Row, SUMMARY, assert_green, summary};
 
-/// A test a case, and all of them in order.
+/// A test per case, and the list of all cases.
 macro_rules! cases {
     ($($(#[$only:meta])? $name:ident => $rows:path,)*) => {
         $($(#[$only])?
@@ -61,7 +61,7 @@ macro_rules! cases {
             assert_green(&$rows(Extent::Quick));
         })*
 
-        /// The rows of every case, in order.
+        /// The functions that return the rows of every case, in order.
         const CASES: &[(&str, fn(Extent) -> Vec<Row>)] = &[$($(#[$only])? (stringify!($name), $rows),)*];
     };
 }

@@ -1,4 +1,4 @@
-//! Small measurement sets from closed forms, of any law, size, stiffness and noise.
+//! Small measurement sets in closed form, with any law, size, stiffness and noise.
 
 use crate::support::full_set;
 use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
@@ -8,24 +8,24 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
-/// A square in uniform strain: two bars that stretch it, or a picture frame that shears it.
+/// A square in uniform strain: stretched by two bars, or sheared by a picture frame.
 pub(crate) struct Uniform<'a> {
     /// Stretch along weft or warp, or shear.
     pub(crate) kind: Kind,
-    /// Whose strains the law is over. Shear: a model of triangles.
+    /// Model whose strain measure the law uses; for shear, a model on triangles.
     pub(crate) model: Model,
     /// Side of the square, m.
     pub(crate) side: f64,
-    /// Stress, N/m.
+    /// Stress over strain, N/m.
     pub(crate) law: &'a dyn Fn(f64) -> f64,
-    /// Of the frames after the first, which is at rest.
+    /// Strains of the frames after the first, which is at rest.
     pub(crate) strains: &'a [f64],
-    /// Standard deviation of each force component, N, told to the fit, and its seed.
+    /// Standard deviation of each force component, N, known to the fit, and the seed.
     pub(crate) noise: Option<(f64, u64)>,
 }
 
 impl Uniform<'_> {
-    /// The set.
+    /// Generates the set.
     pub(crate) fn measure(&self) -> MeasurementSet {
         let side = self.side;
         let grid = Grid { columns: 2, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
@@ -43,7 +43,7 @@ impl Uniform<'_> {
             let noisy = forces.into_iter().map(|force| force + Vector3::from_fn(|_, _| noise()));
             let cord = |(clip, force)| Cord { clip, force, point: None };
             let cords = if strain == 0.0 { Vec::new() } else { noisy.enumerate().map(cord).collect() };
-            // A sheared sheet that nobody saw may have buckled.
+            // A sheared sheet without measured shape may have buckled.
             let positions = (self.kind == Kind::Shear).then(|| self.flat(strain));
             Frame { poses, cords, positions, ..Frame::default() }
         });
@@ -75,7 +75,7 @@ impl Uniform<'_> {
         MeasurementSet { fabric, sequences: vec![sequence] }
     }
 
-    /// Two bars apart: the cloth pulls with σ times the derivative of the strain by the stretch.
+    /// Two bars apart: the force per width is σ times the derivative of strain with respect to stretch.
     fn stretched(&self, strain: f64) -> (Vec<Isometry3<f64>>, Vec<Vector3<f64>>) {
         let along = if self.kind == Kind::StretchWarp { Vector3::y() } else { Vector3::x() };
         let (stretch, slope) = match self.model {
@@ -87,14 +87,14 @@ impl Uniform<'_> {
         (vec![Isometry3::identity(), moved], vec![-force, force])
     }
 
-    /// Where the corners are seen, in their plane but for a micron: heights that are all the same pass for not measured.
+    /// Observed corners, flat but for a micrometre: shapes of constant height count as not measured.
     fn flat(&self, strain: f64) -> Vec<Vector3<f64>> {
         let (side, angle) = (self.side, strain.asin());
         let [weft, warp] = [Vector3::x() * side, Vector3::new(angle.sin(), angle.cos(), 0.0) * side];
         vec![Vector3::z() * 1e-6, weft, warp, weft + warp]
     }
 
-    /// Weft stays, warp leans by γ, sin γ the strain: along each bar pulls σ times its length.
+    /// Weft stays, warp leans by γ, with strain sin γ: the force along each bar is σ times its length.
     fn sheared(&self, strain: f64) -> (Vec<Isometry3<f64>>, Vec<Vector3<f64>>) {
         let (side, angle) = (self.side, strain.asin());
         let (weft, warp) = (Vector3::x(), Vector3::new(angle.sin(), angle.cos(), 0.0));
@@ -111,11 +111,11 @@ impl Uniform<'_> {
     }
 }
 
-/// A sheet between two bars that are pushed together and pulled apart in turn, weightless: pushed it bulges, as a sheet
-/// clamped at both ends does, to the side that is told.
+/// A weightless sheet between two bars that are pushed together and pulled apart in turn; pushed, it bulges to the
+/// given side like a sheet clamped at both ends.
 ///
 /// * `strains` — relative change of the bars' distance in the frames after the first
-/// * `side_of` — 1.0 or −1.0 a frame
+/// * `side_of` — 1.0 or −1.0 per frame
 pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64) -> MeasurementSet {
     let law = |_: f64| 0.0;
     let strip = Uniform {
@@ -133,16 +133,16 @@ pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64
     let grid = Grid { columns: 9, rows: 9, width: side, height: side, diagonals: Diagonals::Alternating };
     sequence.mesh = Mesh { grid: None, ..grid.mesh().unwrap() };
     let column = |column: usize| (0..9).map(|row| grid.node(column, row)).collect();
-    // Else a tenth of a millimetre is taken for noise.
+    // Otherwise a noise of 0.1 mm is assumed.
     sequence.noise = Some(Noise { position_m: Some(1e-5 * side), force_n: None });
     sequence.clips[0].vertices = column(0);
     sequence.clips[1].vertices = column(8);
     for (index, frame) in sequence.frames.iter_mut().enumerate() {
-        // Sheared by so little that it does nothing but tell the frame from one at rest.
+        // Sheared slightly, only to distinguish the frame from one at rest.
         let sheared = if index == 0 { 0.0 } else { 2e-3 };
         frame.poses[1].translation.y = sheared * side;
         let strain = if index == 0 { 0.0 } else { strains[index - 1] };
-        // The way out of the plane that takes up the shortening: w = A/2 (1 − cos 2πx/L), A = 2L/π √δ.
+        // Out-of-plane shape that takes up the shortening: w = A/2 (1 − cos 2πx/L), A = 2L/π √δ.
         let height = side_of(index) * 2.0 * side / std::f64::consts::PI * (-strain).max(0.0).sqrt();
         let place = |p: &Vector3<f64>| {
             let turn = std::f64::consts::TAU * p.x / side;
@@ -153,11 +153,11 @@ pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64
     set
 }
 
-/// Overhangs of a heavy elastica along weft, of another size and stiffness than those of [`full_set`]: the shapes stay
-/// similar, since the density follows.
+/// Overhangs of a heavy elastica along weft, with size and stiffness different from [`full_set`]; the shapes stay
+/// similar, since the density is scaled too.
 ///
-/// * `size` — its lengths, as multiples
-/// * `stiffness` — the rigidity over the size's third power, as a multiple
+/// * `size` — multiple of all lengths
+/// * `stiffness` — multiple of the rigidity over the cube of the size
 pub(crate) fn overhangs(size: f64, stiffness: f64) -> MeasurementSet {
     let MeasurementSet { mut fabric, mut sequences } = full_set();
     sequences.retain(|sequence| sequence.kind == Kind::BendWeft);

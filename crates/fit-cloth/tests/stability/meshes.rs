@@ -1,4 +1,4 @@
-//! Cases 13 to 17: meshes that are none. Every defect is an error that names its place.
+//! Cases 13 to 17: invalid meshes. Every defect is an error that names its place.
 
 use crate::property::for_all;
 use crate::table::{Extent, Row};
@@ -7,7 +7,7 @@ use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Rotation3, Vector2, Vector3};
 use proptest::prelude::*;
 
-/// What a mesh is made of.
+/// Arrays that make up a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct Parts {
     pub(crate) positions: Vec<Vector3<f64>>,
@@ -20,7 +20,7 @@ impl Parts {
         Mesh::new(self.positions.clone(), self.material.clone(), self.triangles.clone())
     }
 
-    /// Area over the square of the longest side, at rest.
+    /// Twice the rest area over the square of the longest side.
     fn slimness(&self, triangle: usize) -> f64 {
         let [p, q, r] = self.triangles[triangle].map(|vertex| self.positions[vertex]);
         let longest = (q - p).norm_squared().max((r - q).norm_squared()).max((p - r).norm_squared());
@@ -28,7 +28,8 @@ impl Parts {
     }
 }
 
-/// Sheets of 1 mm to 10 m, lying anywhere, in 2×2 to 6×6 nodes; and a number that chooses a place in them.
+/// Sheets of 1 mm to 10 m, with any position and orientation, of 2×2 to 6×6 nodes; and a number that selects a place in
+/// them.
 fn sheets() -> impl Strategy<Value = (Parts, usize)> {
     let splits = prop::sample::select(vec![
         Diagonals::Forward,
@@ -50,10 +51,10 @@ fn sheets() -> impl Strategy<Value = (Parts, usize)> {
     )
 }
 
-/// A row of sheets that are spoilt somewhere.
+/// A row of sheets with a defect somewhere.
 ///
-/// * `spoil` — changes the sheet at a place
-/// * `named` — whether the error is the right one; and the words that must stand in its message
+/// * `spoil` — inserts the defect at a place
+/// * `named` — the words that the message must contain; `None` if the error is a wrong one
 pub(crate) fn spoilt(
     case: u8,
     condition: &str,
@@ -74,7 +75,7 @@ pub(crate) fn spoilt(
     })
 }
 
-/// NaN, duplicate and unreferenced vertices, and vertices that are not there.
+/// NaN, duplicate, unreferenced and missing vertices.
 pub(crate) fn case_13(extent: Extent) -> Vec<Row> {
     let not_finite = |error: &Error, _: &Parts| match error {
         Error::NotFinite { vertex, .. } => Some(format!("vertex {vertex}: ")),
@@ -155,7 +156,7 @@ pub(crate) fn case_13(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A triangle without area at rest.
+/// A triangle without rest area.
 pub(crate) fn case_14(extent: Extent) -> Vec<Row> {
     [("exactly on the edge", 0.0), ("1e-12 of the edge above it", 1e-12)]
         .into_iter()
@@ -198,7 +199,8 @@ pub(crate) fn case_15(extent: Extent) -> Vec<Row> {
                     let inner: Vec<_> = edges.iter().filter(|edge| edge.right.is_some()).collect();
                     let [a, b] = inner[at % inner.len()].ends;
                     let fin = sheet.positions.len();
-                    // The mirror image of the edge's left wing, up: both positions and material keep its lengths.
+                    // A mirrored copy of the edge's left wing, turned up: positions and material coordinates keep its
+                    // lengths.
                     let left = inner[at % inner.len()].left;
                     let [p, q, r] = [a, b, left].map(|vertex| sheet.positions[vertex]);
                     let turn = Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(q - p), 1.0);
@@ -219,7 +221,7 @@ pub(crate) fn case_15(extent: Extent) -> Vec<Row> {
         .collect()
 }
 
-/// A triangle wound against its neighbours.
+/// A triangle with opposite winding to its neighbours.
 pub(crate) fn case_16(extent: Extent) -> Vec<Row> {
     [("one triangle", 1), ("every second triangle", 2)]
         .into_iter()
@@ -247,7 +249,7 @@ pub(crate) fn case_16(extent: Extent) -> Vec<Row> {
         .collect()
 }
 
-/// Material coordinates that are missing, mirrored, or of another size; what agrees within 1 % is taken.
+/// Material coordinates that are missing, mirrored or of different size; agreement within 1 % is accepted.
 pub(crate) fn case_17(extent: Extent) -> Vec<Row> {
     let lengths = |error: &Error, _: &Parts| match *error {
         Error::EdgeLength { edge, .. } => Some(format!("edge {}-{}: ", edge[0], edge[1])),

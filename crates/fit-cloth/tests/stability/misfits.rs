@@ -1,4 +1,4 @@
-//! Cases 36, 39 and 40: measurements that are wrong, or that the model cannot follow.
+//! Cases 36, 39 and 40: measurements that are wrong or that the model cannot follow.
 
 use crate::fits::{TRIANGLES, UNIFORM, at, fit, scaled, scales, settings, up_to};
 use crate::measured::{Uniform, bulging, overhangs};
@@ -50,7 +50,7 @@ pub(crate) fn case_36(extent: Extent) -> Vec<Row> {
             |row, (stiffness, size, frame)| {
                 let (stiffness, size) = scaled((stiffness, size));
                 let mut set = overhangs(size, stiffness);
-                // Pushed out three times.
+                // The overhangs repeated three times.
                 set.sequences[0].frames = vec![set.sequences[0].frames.clone(); 3].concat();
                 set.sequences[0].frames[frame].positions.iter_mut().flatten().for_each(|p| p.z = -p.z);
                 let found = fit(&set, &Settings { nodes: Some([9, 9]), ..settings(model) });
@@ -98,12 +98,12 @@ pub(crate) fn case_36(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A curve that two control points meet.
+/// A curve that two control points represent exactly.
 fn law(strain: f64) -> f64 {
     300.0 * strain + 1500.0 * strain * strain
 }
 
-/// A test with one frame's force multiplied; and its largest stress. The noise is an exponent of ten of the largest force.
+/// A test with one frame's force multiplied, and its largest stress. The noise is a power of ten of the largest force.
 fn with_outlier(
     kind: Kind,
     model: Model,
@@ -141,13 +141,13 @@ pub(crate) fn case_39(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A sheet that buckles in every other frame, predicted with its curves: a flat one would be balanced too, and so would one
-/// that bulges to the other side.
+/// A sheet that buckles in every other frame, predicted with its true curves: the flat state is also an equilibrium,
+/// and so is a bulge to the other side.
 ///
-/// * `thin` — rigidity over stiffness and squared side
+/// * `thin` — rigidity over stiffness times side squared
 fn buckled(row: &mut Row, model: Model, (stiffness, side): (f64, f64), thin: f64, seed: u64) -> bool {
     let mut random = StdRng::seed_from_u64(seed);
-    // Euler's load of a sheet clamped at both ends, 4π² B/L², over the stiffness.
+    // Euler load of a sheet clamped at both ends, 4π² B/L², over the stiffness.
     let euler = 4.0 * std::f64::consts::PI.powi(2) * thin;
     let strains: Vec<f64> =
         (0..6).map(|i| if i % 2 == 0 { -euler * random.random_range(5.0..20.0) } else { 0.005 }).collect();
@@ -172,7 +172,7 @@ fn buckled(row: &mut Row, model: Model, (stiffness, side): (f64, f64), thin: f64
         let report = &validation.sequences[0].report;
         (report.multi_stable.clone(), report.position_rms, validation.prediction.dropped.len())
     });
-    // The least bulge that was seen; what is not flagged is compared, and must not be on the other side.
+    // The smallest observed bulge; unflagged frames are compared and must bulge to the same side.
     let shallowest = strains.iter().filter(|strain| **strain < 0.0).map(|strain| (-strain).sqrt());
     let bulge = shallowest.fold(f64::INFINITY, f64::min) * 2.0 * side / std::f64::consts::PI;
     let holds = found.as_ref().is_ok_and(|(flagged, rms, dropped)| {
@@ -225,7 +225,7 @@ pub(crate) fn case_40(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A linear fit of a law with curvature: what it misses is known from the fit of the law itself.
+/// A linear fit of a nonlinear law: the expected misfit follows from a linear fit of the law itself.
 fn straight(
     row: &mut Row,
     kind: Kind,
@@ -245,7 +245,7 @@ fn straight(
     }
     let linear = Settings { variant: Variant::Linear, ..settings(model) };
     let found = fit(&set, &linear).map(|(_, stage)| {
-        // Of the law alone, at the strains of the frames, weighed as forces.
+        // Linear fit of the law at the strains of the frames, weighted as forces.
         let lever = |strain: f64| match (model, kind) {
             (Model::Stvk, Kind::StretchWeft) => side * (1.0 + 2.0 * strain).sqrt(),
             _ => side,
@@ -255,14 +255,14 @@ fn straight(
             (strains.iter().map(|strain| missed(strain).powi(2)).sum::<f64>() / strains.len() as f64).sqrt();
         (stage.scatter.misfit / rms, text::verdict(&stage, &[]).contains("beyond"), stage.scatter.known)
     });
-    // Some measurements are across the pull, and say nothing.
+    // Some measured components are perpendicular to the pull and carry no information.
     let holds = matches!(found, Ok((share, true, known)) if (0.5..1.5).contains(&share) && known == given);
     row.holds(holds, || {
         format!("stiffness {stiffness:e}, side {side:e}, noise {noise:e}, seed {seed}: {found:?}")
     })
 }
 
-/// Loading above unloading: no curve meets both.
+/// Loading above unloading: no curve fits both.
 fn hysteresis(row: &mut Row, kind: Kind, model: Model, (stiffness, side): (f64, f64), seed: u64) -> bool {
     let law = |strain: f64| stiffness * law(strain);
     let up = up_to(0.2, 12);
@@ -286,7 +286,7 @@ fn hysteresis(row: &mut Row, kind: Kind, model: Model, (stiffness, side): (f64, 
     row.holds(holds, || format!("stiffness {stiffness:e}, side {side:e}, seed {seed}: {found:?}"))
 }
 
-/// Fits of a law that the curve can have: in a hundred, one may seem to miss it.
+/// Fits of a law that the curve can represent: one in a hundred may report a misfit.
 fn right_law(mut row: Row, kind: Kind, model: Model, fits: u32) -> Row {
     let mut random = StdRng::seed_from_u64(40);
     let mut told = 0;
@@ -303,7 +303,7 @@ fn right_law(mut row: Row, kind: Kind, model: Model, fits: u32) -> Row {
             Err(error) => _ = row.measure(f64::NAN, || error),
         }
     }
-    // Few fits may all have been unlucky.
+    // With few fits, one false alarm is allowed.
     let share = f64::from(told.saturating_sub(1)) / f64::from(fits);
     row.measure(share, || format!("{told} of {fits}"));
     row.runs += u64::from(fits) - 1;

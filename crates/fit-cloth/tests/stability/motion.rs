@@ -1,4 +1,4 @@
-//! Cases 28 to 31: cloth in motion at steps too long, too short, for too long, and into infinity.
+//! Cases 28 to 31: motion with steps too long or too short, over many steps, and with overflow.
 
 use crate::balance::larger;
 use crate::property::for_all;
@@ -12,7 +12,7 @@ use cloth_sim::mesh::Diagonals;
 use cloth_sim::samples::{self, GRAVITY, SIDE, Sample};
 use nalgebra::Vector3;
 
-/// A horizontal square that hangs from two corners, flat but for a micrometre.
+/// A horizontal square held at two corners, flat but for a micrometre.
 fn hung(model: Model, nodes: usize, stiffness: f64) -> Sample {
     let curves = samples::fabric(model, [500.0 * stiffness, 50.0 * stiffness, 1e-6 * stiffness]).unwrap();
     let mut sample = Sample::at_rest(samples::square(nodes, Diagonals::Alternating).unwrap(), model, curves);
@@ -31,8 +31,8 @@ fn runge_kutta(step: f64, damping: Damping) -> Settings {
     Settings { step, integrator: Integrator::RungeKutta, damping, wind: None }
 }
 
-/// Runge–Kutta a hundredth beyond its limit is refused, and the limit is said; a tenth below it the energy of small motions
-/// stays. (Weight that stretches the cloth on its way shortens the limit.)
+/// Runge–Kutta 1 % beyond its step limit is refused, and the message states the limit; 10 % below it, the energy of
+/// small motions does not grow. (Weight that stretches the cloth lowers the limit.)
 pub(crate) fn case_28(extent: Extent) -> Vec<Row> {
     let dampings = [
         ("undamped", Damping::default()),
@@ -71,7 +71,7 @@ pub(crate) fn case_28(extent: Extent) -> Vec<Row> {
     .collect()
 }
 
-/// Implicit Euler at any step: never more energy than at the start. Single gains from step to step are counted.
+/// Implicit Euler at any step size: energy never exceeds that at the start. Gains in single steps are counted.
 pub(crate) fn case_29(extent: Extent) -> Vec<Row> {
     let steps = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
     let rows = Model::ALL.into_iter().flat_map(|model| steps.map(|step| (model, step)));
@@ -97,11 +97,11 @@ pub(crate) fn case_29(extent: Extent) -> Vec<Row> {
 
 #[derive(Debug, Default)]
 struct Gains {
-    /// Total energy above the start's, over the largest kinetic, elastic or weight energy so far.
+    /// Total energy above the initial one, over the largest kinetic, elastic or weight energy so far.
     largest: f64,
-    /// Steps that ended above the one before, by more than rounding.
+    /// Steps that gained energy by more than rounding.
     single: u32,
-    /// Steps whose equation was said not to be solved to the tolerance.
+    /// Steps reported as not solved to the tolerance.
     unsolved: u32,
     steps: u32,
     iterations: usize,
@@ -132,7 +132,7 @@ impl Gains {
     }
 }
 
-/// Numbers that are not finite in mid-run: the step is said, and the last good state is kept.
+/// Non-finite numbers during a run: the step is reported, and the last good state is kept.
 pub(crate) fn case_30(extent: Extent) -> Vec<Row> {
     Model::ALL
         .map(|model| {
@@ -150,7 +150,7 @@ fn breaks(row: &mut Row, sample: &Sample, speed: f64) -> bool {
     let cloth = in_motion(sample);
     let damping = Damping::default();
     let limit = stable_step(&cloth, &sample.curves, &sample.start, &damping);
-    // Every second node one way, its neighbours the other.
+    // Alternating velocities at neighbouring nodes.
     let thrown = |i: usize| if (i / 3).is_multiple_of(2) { speed } else { -speed };
     let velocities = (0..sample.start.len()).map(thrown).collect();
     let settings = runge_kutta(0.9 * limit, damping);
@@ -165,17 +165,17 @@ fn breaks(row: &mut Row, sample: &Sample, speed: f64) -> bool {
         let (steps, time, positions, energies) = good;
         let finite = motion.positions().iter().chain(motion.velocities()).all(|value| value.is_finite());
         let kept = motion.positions() == positions && motion.time() == time && motion.energies() == energies;
-        // The time says which step it was; trying again changes nothing.
+        // The time agrees with the step number; trying again changes nothing.
         let counted = (time / settings.step).round() as usize == steps && number == steps + 1;
         let again = motion.step().status == Status::NotFinite && motion.positions() == positions;
         return row.holds(finite && kept && counted && again, || format!("{speed:e} m/s, step {number}"));
     }
-    // Slow enough to stay finite: all that is asked for then.
+    // At a low speed it stays finite, which is all that is required.
     let finite = motion.positions().iter().all(|value| value.is_finite());
     row.holds(finite, || format!("{speed:e} m/s: not finite, not said"))
 }
 
-/// At rest for a million steps: the cloth stays where it is.
+/// At rest for a million steps: the cloth does not drift.
 pub(crate) fn case_31(extent: Extent) -> Vec<Row> {
     let [many, fewer] = [1_000_000, 100_000].map(|full| extent.runs(500, full));
     let implicit = |newton, linear| Integrator::ImplicitEuler { newton, linear };
@@ -197,7 +197,7 @@ pub(crate) fn case_31(extent: Extent) -> Vec<Row> {
     .collect()
 }
 
-/// How far the node that moves most is from where it was, after so many steps; `None` if a step fails.
+/// Largest displacement of a node after so many steps; `None` if a step fails.
 fn drift(model: Model, integrator: Integrator, steps: u32) -> Option<f64> {
     let mut sample = samples::hanging_sheet(model, 3).unwrap();
     let cloth = sample.cloth().unwrap();

@@ -1,4 +1,4 @@
-//! Properties over random inputs: what fails is made as small as it can be, and reported.
+//! Properties over random inputs; a failing input is shrunk and reported.
 
 use crate::table::Row;
 use proptest::strategy::Strategy;
@@ -6,10 +6,10 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, Test
 use std::cell::RefCell;
 use std::fmt::Debug;
 
-/// Tries a property on so many inputs, the same in every run; each is a run of the row, whose failure is then the smallest
-/// input that was found to fail.
+/// Tries a property on a number of inputs, the same every time; each is a run of the row. A failure is reported with
+/// the smallest failing input found.
 ///
-/// * `property` — adds one run to the row, by [`Row::holds`] or [`Row::measure`], and returns what that returned
+/// * `property` — adds one run to the row, by [`Row::holds`] or [`Row::measure`], and returns its result
 pub(crate) fn for_all<S: Strategy>(
     mut row: Row,
     runs: u32,
@@ -21,14 +21,14 @@ where
 {
     let config =
         Config { cases: runs, failure_persistence: None, max_shrink_iters: 500, ..Config::default() };
-    // A seed of its own, so that cases with the same inputs do not see the same numbers.
+    // A seed per row, so that cases with the same strategy get different numbers.
     let mut seed = [0u8; 32];
     let name = row.condition.bytes().chain([row.case]);
     name.enumerate().for_each(|(i, byte)| seed[i % 32] = seed[i % 32].wrapping_mul(31).wrapping_add(byte));
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
     let counted = RefCell::new(row.clone());
     let outcome = runner.run(&inputs, |input| {
-        // What is tried while a failure is made smaller does not count as runs.
+        // Inputs tried while shrinking do not count as runs.
         let failed = counted.borrow().failure.is_some();
         let mut scratch = Row { failure: None, ..counted.borrow().clone() };
         let holds = property(&mut scratch, input.clone());
@@ -40,7 +40,7 @@ where
         if holds { Ok(()) } else { Err(TestCaseError::fail(failure.unwrap_or_default())) }
     });
     row = counted.into_inner();
-    // A panic ended the run before it was counted.
+    // A run that panicked was not counted yet.
     row.runs += u64::from(outcome.is_err() && row.runs == row.survived);
     match outcome {
         Err(TestError::Fail(reason, smallest)) => {

@@ -1,4 +1,4 @@
-//! Every kind of file that is read, a valid one of each, and what becomes of a damaged one.
+//! Every kind of input file, a valid one of each, and the refusal of damaged ones.
 
 use crate::support::full_set;
 use cloth_data::curve_file::CurveFile;
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
 
-/// How a file is written.
+/// Syntax of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Form {
     /// Comma-separated values.
@@ -30,19 +30,19 @@ pub(crate) enum Form {
     Ply,
     /// JSON.
     Json,
-    /// An array of NumPy.
+    /// A NumPy array.
     Array,
 }
 
 /// A kind of file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reader {
-    /// Where it lies in [`Place`].
+    /// Path in [`Place`].
     pub(crate) file: &'static str,
     pub(crate) form: Form,
-    /// Reads it, below a folder; all that was read, as text.
+    /// Reads it from a folder and returns the parsed content as text.
     read: fn(&Path) -> Result<String>,
-    /// The command that reads it, and would write into `out`.
+    /// The command that reads it, which would write into `out`.
     command: &'static [&'static str],
 }
 
@@ -62,7 +62,7 @@ const fn in_set(file: &'static str, form: Form, read: fn(&Path) -> Result<String
     Reader { file, form, read, command: STRETCH }
 }
 
-/// All of them.
+/// All kinds of file.
 pub(crate) const READERS: [Reader; 20] = [
     in_set("set/fabric.toml", Form::Toml, |at| shown(read_fabric(&at.join("set")))),
     in_set("set/stretch-weft/test.toml", Form::Toml, |at| shown(read_sequence(&at.join("set/stretch-weft")))),
@@ -292,7 +292,7 @@ const MATERIAL: &str = r#"{
 }
 "#;
 
-/// A set whose folder holds every kind of file: shapes as OBJ and PLY, forces with points, frames with times.
+/// A set with every kind of file: shapes as OBJ and PLY, forces with points, frames with times.
 fn set() -> MeasurementSet {
     let mut set = full_set();
     let weft = set.sequences.iter_mut().find(|sequence| sequence.name == "stretch-weft").unwrap();
@@ -307,7 +307,7 @@ fn set() -> MeasurementSet {
     set
 }
 
-/// All files with their contents, written once.
+/// All files with their contents, generated once.
 static FILES: LazyLock<BTreeMap<PathBuf, Vec<u8>>> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -342,7 +342,7 @@ static FILES: LazyLock<BTreeMap<PathBuf, Vec<u8>>> = LazyLock::new(|| {
     contents(at)
 });
 
-/// Every file below a folder; of what is no regular file, or too large to compare, nothing but its name.
+/// Every file below a folder; only the name of irregular files and of files too large to compare.
 pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_path_buf()];
@@ -371,7 +371,7 @@ pub(crate) struct Refusal {
     pub(crate) expected: String,
 }
 
-/// A folder with every kind of file in it.
+/// A folder with every kind of file.
 pub(crate) struct Place(tempfile::TempDir);
 
 impl Place {
@@ -389,15 +389,16 @@ impl Place {
         self.0.path()
     }
 
-    /// Runs the program there.
+    /// Runs the program in the folder.
     pub(crate) fn run(&self, arguments: &[&str]) -> Output {
-        // A command that waits for a pipe must not hold up the suite: 124 is none of the codes expected.
+        // A command that waits for a pipe must not block the suite: 124 is not an expected exit code.
         let mut command = Command::new("timeout");
         command.args(["100", env!("CARGO_BIN_EXE_fit-cloth")]).args(arguments);
         command.current_dir(self.path()).stdin(Stdio::null()).output().unwrap()
     }
 
-    /// Exit code 3, one line on standard error that begins so, nothing on standard output, nothing written.
+    /// Checks for exit code 3, one line on standard error that begins with `start`, an empty standard output and
+    /// nothing written.
     pub(crate) fn refuses(&self, arguments: &[&str], start: &str) -> std::result::Result<(), String> {
         let before = contents(self.path());
         let output = self.run(arguments);
@@ -423,17 +424,17 @@ impl Reader {
         &FILES[Path::new(self.file)]
     }
 
-    /// The valid file; an array has no text.
+    /// Text of the valid file; empty for an array.
     pub(crate) fn text(&self) -> &'static str {
         std::str::from_utf8(self.bytes()).unwrap_or_default()
     }
 
-    /// What is read of the file as it lies there.
+    /// Reads the file as it is in the folder.
     pub(crate) fn read(&self, place: &Place) -> Result<String> {
         (self.read)(place.path())
     }
 
-    /// What is read of other contents; the valid ones then lie there again.
+    /// Reads other contents, then restores the valid ones.
     pub(crate) fn read_of(&self, place: &Place, bytes: &[u8]) -> Result<String> {
         let path = place.path().join(self.file);
         fs::write(&path, bytes).unwrap();
@@ -442,7 +443,7 @@ impl Reader {
         read
     }
 
-    /// The refusal of other contents; or what happened instead.
+    /// The refusal of other contents, or an error describing what happened instead.
     pub(crate) fn refusal(&self, place: &Place, bytes: &[u8]) -> std::result::Result<Refusal, String> {
         match self.read_of(place, bytes) {
             Err(Error::Input { path, line, field, found, expected }) if path.ends_with(self.file) => {
@@ -453,9 +454,10 @@ impl Reader {
         }
     }
 
-    /// The program with the damaged file: exit code 3, the file and the line named, nothing written.
+    /// Runs the program on the damaged file and checks for exit code 3, file and line in the message, and nothing
+    /// written.
     ///
-    /// * `line` — `None` where the file has no line to name
+    /// * `line` — `None` if the damage has no line
     pub(crate) fn program_refuses(
         &self,
         place: &Place,
@@ -476,10 +478,10 @@ impl Reader {
     }
 }
 
-/// The readers of some forms.
+/// The readers of the given forms.
 pub(crate) fn readers(forms: &[Form]) -> impl Iterator<Item = &'static Reader> {
     READERS.iter().filter(|reader| forms.contains(&reader.form))
 }
 
-/// All but arrays.
+/// All forms except arrays.
 pub(crate) const TEXTS: [Form; 5] = [Form::Table, Form::Toml, Form::Obj, Form::Ply, Form::Json];

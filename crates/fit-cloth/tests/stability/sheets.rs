@@ -1,4 +1,4 @@
-//! Cases 18 and 19: sheets that are a thousand times too large, and sheets that nothing holds.
+//! Cases 18 and 19: sheets a thousand times too large, and sheets that are not held.
 
 use crate::meshes::{Parts, spoilt};
 use crate::property::for_all;
@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// Millimetres read as metres: in one of two places the lengths disagree; in all of them no specimen is so large.
+/// Millimetres read as metres: in one of two places, the lengths disagree; in all places, the specimen is too large.
 pub(crate) fn case_18(extent: Extent) -> Vec<Row> {
     let asked = |error: &Error, _: &Parts| {
         matches!(error, Error::EdgeLength { .. }).then(|| "(millimetres?)".to_string())
@@ -46,7 +46,7 @@ pub(crate) fn case_18(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// Every sequence of a set that comes with the repository, written with some of its lengths a thousand times larger.
+/// Every sequence of a fixture, written with some of its lengths a thousand times larger.
 fn in_millimetres(what: &str) -> Row {
     let mut row = Row::new(18, format!("{what}, in a set's files"));
     let set = read_set(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/cotton-denim")).unwrap();
@@ -60,7 +60,7 @@ fn in_millimetres(what: &str) -> Row {
             "clip poses" => {
                 let poses = sequence.frames.iter_mut().flat_map(|frame| &mut frame.poses);
                 poses.for_each(|pose| pose.translation.vector *= 1e3);
-                // A single clip, or one that is held still, is as far from itself as ever.
+                // A single or fixed clip has no distances that would disagree.
                 if sequence.clips.len() < 2 {
                     continue;
                 }
@@ -75,7 +75,7 @@ fn in_millimetres(what: &str) -> Row {
             }
         }
         let name = sequence.name.clone();
-        // What is written is read back, and refused if that is.
+        // The writer reads back its output, and fails if it is refused.
         let one = MeasurementSet { fabric: set.fabric.clone(), sequences: vec![sequence] };
         let message = write_set(folder.path(), &one).err().map(|error| error.to_string());
         let named = message.as_ref().is_some_and(|message| message.contains("millimetres"));
@@ -84,7 +84,7 @@ fn in_millimetres(what: &str) -> Row {
     row
 }
 
-/// Sheets apart from one another, some of them held: each of the others is named.
+/// Separate sheets, some of them held: the message names each of the others.
 pub(crate) fn case_19(extent: Extent) -> Vec<Row> {
     let conditions = Model::ALL.into_iter().flat_map(|model| [false, true].map(|planar| (model, planar)));
     conditions
@@ -99,7 +99,7 @@ pub(crate) fn case_19(extent: Extent) -> Vec<Row> {
         .collect()
 }
 
-/// Sheets of so many nodes a side, each held at one node or not.
+/// Sheets with the given nodes per side, each held at one node or not.
 fn apart(row: &mut Row, model: Model, planar: bool, sheets: &[(bool, usize)], size: f64) -> bool {
     let (mut positions, mut material, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     let (mut held, mut loose) = (Vec::new(), Vec::new());
@@ -115,7 +115,7 @@ fn apart(row: &mut Row, model: Model, planar: bool, sheets: &[(bool, usize)], si
             false => loose.push(Part { vertex: first, vertices: nodes * nodes }),
         }
     }
-    // Parts are told from one another before anything else is looked at: springs would want a grid.
+    // Connected parts are checked first: springs would require a grid.
     let mesh = Mesh::new(positions, material, triangles).unwrap();
     let stiffnesses = [300.0, 30.0, if planar { 0.0 } else { 1e-6 }];
     let mut sample = Sample::at_rest(mesh, model, samples::fabric(model, stiffnesses).unwrap());

@@ -1,5 +1,5 @@
-//! Cases 34 and 35: the least squares of a linearised step, against exact fractions and the conditions of optimality,
-//! which are formed here from the definition.
+//! Cases 34 and 35: the least squares of a linearised step, against exact fractions and the optimality conditions,
+//! formed here from their definition.
 
 use crate::property::for_all;
 use crate::table::{Extent, Row};
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
-/// Columns up to so far apart.
+/// Largest ratios of column scales.
 const SPREADS: [f64; 5] = [1.0, 1e2, 1e4, 1e6, 1e8];
 
 pub(crate) fn case_34(extent: Extent) -> Vec<Row> {
@@ -71,8 +71,8 @@ fn scaled_columns(problem: &LeastSquares) -> Vec<DVector<f64>> {
     problem.jacobian.column_iter().map(|column| unit(column.into_owned())).collect()
 }
 
-/// A system of small whole numbers, whose normal equations are solved in fractions (Cramer); columns then stretched by
-/// powers of two, which no rounding enters.
+/// A system of small integers with normal equations solved exactly (Cramer); columns are then scaled by powers of two,
+/// without rounding.
 fn fractions(row: &mut Row, seed: u64, spread: f64) -> bool {
     let mut random = StdRng::seed_from_u64(seed);
     let n = random.random_range(1..5);
@@ -104,7 +104,7 @@ fn fractions(row: &mut Row, seed: u64, spread: f64) -> bool {
     );
     let solution = problem.solve();
     let largest = exact.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
-    // What is zero exactly is known to the rounding of the target.
+    // An exact zero is accurate to the rounding of the target.
     let largest = if largest > 0.0 { largest } else { 1.0 };
     let error =
         (0..n).map(|j| (solution.point[j] * scales[j] - exact[j]).abs() / largest).fold(0.0, f64::max);
@@ -114,7 +114,7 @@ fn fractions(row: &mut Row, seed: u64, spread: f64) -> bool {
     })
 }
 
-/// By cofactors, without rounding.
+/// Determinant by cofactors, without rounding.
 fn determinant(matrix: &[Vec<i128>]) -> i128 {
     if matrix.is_empty() {
         return 1;
@@ -127,9 +127,9 @@ fn determinant(matrix: &[Vec<i128>]) -> i128 {
     (0..matrix.len()).map(|column| sign(column) * matrix[0][column] * determinant(&minor(column))).sum()
 }
 
-/// A problem as large as a fit's, with rows and a box around a point that meets them all.
+/// A problem of the size of a fit, with constraint rows and a box around a feasible point.
 ///
-/// * `hidden` — directions that the data do not see
+/// * `hidden` — leaves directions that the data do not determine
 fn random_problem(seed: u64, spread: f64, hidden: bool) -> LeastSquares {
     let mut random = StdRng::seed_from_u64(seed);
     let n = random.random_range(2..12);
@@ -159,8 +159,8 @@ fn random_problem(seed: u64, spread: f64, hidden: bool) -> LeastSquares {
     problem
 }
 
-/// The largest violation of the conditions of optimality, in unknowns whose columns have unit length:
-/// Jᵀ(Jp − y) = Σ λ g, λ ≥ 0, g·p ≥ h, λ or g·p − h = 0.
+/// The largest violation of the optimality conditions, in unknowns with columns of unit length: Jᵀ(Jp − y) = Σ λ g, λ ≥
+/// 0, g·p ≥ h, λ or g·p − h = 0.
 fn conditions(problem: &LeastSquares, solution: &Solution) -> f64 {
     let lengths: Vec<f64> = problem
         .jacobian
@@ -171,7 +171,7 @@ fn conditions(problem: &LeastSquares, solution: &Solution) -> f64 {
     let size = 1.0 + problem.target.norm();
     let mut gradient = problem.jacobian.tr_mul(&(&problem.jacobian * point - &problem.target));
     let mut worst = 0.0f64;
-    // How far g·p is above h, over the size of the numbers in it.
+    // g·p − h over the magnitude of its terms.
     let slack = |bound: Bound| match bound {
         Bound::Row(i) => {
             let row = problem.rows.row(i);
@@ -198,7 +198,7 @@ fn conditions(problem: &LeastSquares, solution: &Solution) -> f64 {
         worst = worst.max(-slack(bound));
     }
     let stationarity = gradient.iter().zip(&lengths).map(|(g, length)| (g / length).abs() / size);
-    // A NaN must not be lost in a maximum.
+    // A NaN must propagate through the maximum.
     stationarity.chain([worst]).fold(0.0, |worst, figure| if figure <= worst { worst } else { figure })
 }
 
@@ -231,7 +231,7 @@ pub(crate) fn case_35(extent: Extent) -> Vec<Row> {
         let mut random = StdRng::seed_from_u64(!seed);
         let direction = DVector::from_fn(n, |_, _| random.random_range(-1.0..1.0));
         let lengths = DVector::from_iterator(n, problem.jacobian.column_iter().map(|column| column.norm()));
-        // d·p ≥ 1 + gap and −d·p ≥ −1, alone.
+        // Only d·p ≥ 1 + gap and −d·p ≥ −1.
         let direction = direction.component_mul(&lengths);
         problem.rows = DMatrix::from_rows(&[direction.transpose(), -direction.transpose()]);
         problem.bounds = DVector::from_vec(vec![1.0 + gap, -1.0]);
@@ -246,7 +246,7 @@ pub(crate) fn case_35(extent: Extent) -> Vec<Row> {
         let mut random = StdRng::seed_from_u64(!seed);
         let tilt = 10f64.powf(exponent);
         let m = problem.rows.nrows();
-        // Pairs of rows that differ by a tilt, and bounds that differ by as little.
+        // Pairs of nearly parallel rows with nearly equal bounds.
         for i in (1..m).step_by(2) {
             let by = 1.0 + tilt * random.random_range(0.0..1.0);
             let before = problem.rows.row(i - 1) * by;
@@ -281,7 +281,7 @@ pub(crate) fn case_35(extent: Extent) -> Vec<Row> {
             problem.bounds[i] *= by;
         }
         let solution = problem.solve();
-        // Judged with every row of unit length again.
+        // Judged with rows normalised to unit length.
         let mut even = problem.clone();
         let mut evened = solution.clone();
         for i in 0..even.rows.nrows() {
@@ -325,7 +325,7 @@ impl Residuals for Line {
     }
 }
 
-/// A nonlinear fit whose linearised step cannot be solved has not converged, and says why.
+/// A nonlinear fit with an unsolvable linearised step has not converged, and reports the reason.
 fn unsolvable_steps() -> Row {
     let mut row = Row::new(35, "a fit whose step cannot be solved: not converged, and why");
     for gap in [1e-6, 1e-3, 1.0] {

@@ -1,5 +1,5 @@
-//! Cases 22 and 25: stretch a billion times as stiff as bending, and gravity ten thousand times as strong, from a cold start;
-//! and what the solvers need for it.
+//! Cases 22 and 25: stretch a billion times as stiff as bending, and ten thousand times gravity, from a cold start; and
+//! the solvers' cost.
 
 use crate::balance;
 use crate::property::for_all;
@@ -9,7 +9,7 @@ use cloth_sim::material::Model;
 use cloth_sim::samples::{self, Sample};
 use std::fmt;
 
-/// A scene whose stiffness is raised.
+/// A scene for increasing stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scene {
     Cantilever,
@@ -28,9 +28,9 @@ impl fmt::Display for Scene {
 impl Scene {
     pub(crate) const ALL: [Self; 2] = [Self::Cantilever, Self::ShearFrame];
 
-    /// From flat. The frame is sheared by 0.2 rad.
+    /// The sample, starting flat. The frame is sheared by 0.2 rad.
     ///
-    /// * `stretch`, `bend` — N/m, and N·m or, of springs, N/m
+    /// * `stretch`, `bend` — stiffnesses in N/m and N·m; for springs, both in N/m
     pub(crate) fn sample(self, model: Model, nodes: usize, stretch: f64, bend: f64) -> Sample {
         let (sample, shear) = match self {
             Self::Cantilever => (samples::cantilever(model, nodes, stretch), 0.1),
@@ -41,20 +41,20 @@ impl Scene {
     }
 }
 
-/// The solvers, as they are named in tables.
+/// The solvers by their names in tables.
 pub(crate) const SOLVERS: [(&str, Method); 2] =
     [("mixed Newton", Method::MixedNewton), ("Levenberg–Marquardt", Method::LevenbergMarquardt)];
 
-/// Levenberg–Marquardt may take thousands.
+/// Settings with enough iterations: Levenberg–Marquardt may take thousands.
 pub(crate) fn settings(method: Method) -> Settings {
     let max_iterations = if method == Method::MixedNewton { 200 } else { 5_000 };
     Settings { method, max_iterations, ..Settings::default() }
 }
 
-/// Stretch, N/m, while bending goes from as stiff to a billionth of it.
+/// Stretch stiffness, N/m, while bending goes from equal to a billionth of it.
 pub(crate) const STRETCH: f64 = 1e4;
 
-/// Stretch over bending from 1 to 1e9 (1/m²), and a membrane ten thousand times as stiff with bending unchanged.
+/// Stretch over bending from 1 to 1e9 (1/m²), and a membrane ten thousand times as stiff at the same bending.
 pub(crate) fn case_22(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for scene in Scene::ALL {
@@ -83,7 +83,7 @@ pub(crate) fn case_22(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// Gravity from none to ten thousand g; what holds the sheet bears its weight.
+/// Gravity from zero to ten thousand g; the held nodes carry the weight.
 pub(crate) fn case_25(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for (scene, of) in [
@@ -92,7 +92,7 @@ pub(crate) fn case_25(extent: Extent) -> Vec<Row> {
     ] {
         for model in Model::ALL {
             for times in [0.0, 1e-4, 1e-2, 1.0, 1e2, 1e3, 1e4] {
-                // Without weight nothing holds ring-2 springs at flat, nor a hanging sheet from swinging.
+                // Without weight, ring-2 springs have no stiffness at flat, and a hanging sheet can swing.
                 if times == 0.0 && (model == Model::Springs || scene == "hanging sheet") {
                     continue;
                 }

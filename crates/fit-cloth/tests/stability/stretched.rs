@@ -1,4 +1,4 @@
-//! Cases 3 and 4: curves that are read beyond their points, that are one point, nothing, or six decades.
+//! Cases 3 and 4: curves beyond their last point, and curves of one point, zero stiffness, or six decades.
 
 use crate::balance;
 use crate::curves::{curve, largest_stiffness, points};
@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 const RULES: [NegativeStrain; 4] =
     [NegativeStrain::Odd, NegativeStrain::Linear, NegativeStrain::Green, NegativeStrain::Slack];
 
-/// Strain up to ten times and more past the last point: the stress is the straight line, and equilibria converge.
+/// Strain up to ten times and more past the last point: the stress is linear, and equilibria converge.
 pub(crate) fn case_03(extent: Extent) -> Vec<Row> {
     let lines = [2, 3, 5].map(|count| {
         let row =
@@ -47,7 +47,7 @@ pub(crate) fn case_03(extent: Extent) -> Vec<Row> {
     lines.into_iter().chain(pulled).collect()
 }
 
-/// A strip in its plane whose curves end at a strain of 0.02; the force on its clip is known.
+/// A planar strip whose curves end at a strain of 0.02; the force on its clip is known.
 fn pulled_past_the_end(row: &mut Row, model: Model, times: f64, stiffness: f64, rise: f64) -> bool {
     let last = 0.02;
     let strain = times * last;
@@ -78,7 +78,7 @@ fn pulled_past_the_end(row: &mut Row, model: Model, times: f64, stiffness: f64, 
     balance::judge(row, &cloth, &sample, &x, &found, also, &input)
 }
 
-/// One point is the exact constant; nothing but zeros is said to be no stiffness; six decades converge.
+/// One point is exactly constant; all zeros are reported as no stiffness; six decades converge.
 pub(crate) fn case_04(extent: Extent) -> Vec<Row> {
     let mut rows = Vec::new();
     for rule in RULES {
@@ -132,8 +132,8 @@ pub(crate) fn case_04(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A sagging sheet between two clips, of curves that rise over some decades, as a power of strain: other curves would dip
-/// below zero between such points.
+/// A sagging sheet between two clips, with curves that rise over some decades as a power of strain: other curves would
+/// fall below zero between the points.
 fn rising(
     row: &mut Row,
     model: Model,

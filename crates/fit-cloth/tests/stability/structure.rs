@@ -1,4 +1,4 @@
-//! Cases 45 to 48: tables, names, faces and JSON that are not put together as they should be.
+//! Cases 45 to 48: malformed tables, names, faces and JSON.
 
 use crate::inputs::{Wanted, line_of, pick, program_refused, refused};
 use crate::property::for_all;
@@ -10,7 +10,7 @@ use std::fs;
 
 // 45 ---------------------------------------------------------------------------------------------------------------
 
-/// A table's cells.
+/// Cells of a table.
 fn cells(reader: &Reader) -> Vec<Vec<String>> {
     reader.text().lines().map(|line| line.split(',').map(String::from).collect()).collect()
 }
@@ -25,7 +25,7 @@ pub(crate) fn case_45(extent: Extent) -> Vec<Row> {
     let runs = extent.runs(60, 2_000);
     let mut rows = Vec::new();
     type Damage = fn(&mut Vec<Vec<String>>, usize, usize) -> (usize, &'static str);
-    // Cells, a line below the header and a column; gives the line of the refusal and its field.
+    // Damage to the cells at a line below the header and a column; returns line and field of the refusal.
     let damages: [(&str, Damage); 7] = [
         ("a field too few", |cells, row, column| {
             cells[row].remove(column);
@@ -60,7 +60,7 @@ pub(crate) fn case_45(extent: Extent) -> Vec<Row> {
     for (name, damage) in damages {
         let row = Row::new(45, format!("{name}: any table"));
         rows.push(for_all(row, runs, any::<[usize; 3]>(), |row, [file, line, column]| {
-            // What nobody asks for in a laboratory's table may have any name.
+            // Unused columns of a laboratory's table may have any name.
             let named = |reader: &&&Reader| !name.starts_with("a column") || reader.file != "strip.csv";
             let tables: Vec<&&Reader> = tables.iter().filter(named).collect();
             let reader = pick(&tables, file);
@@ -70,7 +70,7 @@ pub(crate) fn case_45(extent: Extent) -> Vec<Row> {
             refused(row, reader, &place, &joined(&cells), &Wanted { line: Some(line), field, words: "" })
         }));
     }
-    // Those that the reader cannot do without; a strip's branches it can.
+    // Required columns; a strip's branches are optional.
     let needed = |name: &str| {
         let optional = ["time_s", "cycle", "phase", "branch", "stiffness_n_per_m"];
         !(optional.contains(&name) || name.starts_with("stress_") && name != "stress_n_per_m")
@@ -195,7 +195,8 @@ pub(crate) fn case_46(_: Extent) -> Vec<Row> {
 
 // 47 ---------------------------------------------------------------------------------------------------------------
 
-/// A corner of a face in the words of OBJ, and what is said of it; `vertices` and `coordinates` are how many there are.
+/// Damages a corner of an OBJ face and returns the expected words. Arguments: number of vertices, the corner's parts, a
+/// random number.
 type Corner = fn(usize, &mut Vec<String>, usize) -> &'static str;
 
 pub(crate) fn case_47(extent: Extent) -> Vec<Row> {
@@ -252,7 +253,7 @@ pub(crate) fn case_47(extent: Extent) -> Vec<Row> {
             let corners: Vec<Token> =
                 numbers(reader).into_iter().filter(|token| token.field == "f").collect();
             let mut token = pick(&corners, at);
-            // A corner of a face that has the first vertex already.
+            // Another corner of a face that already has the first vertex.
             if field == "mesh" {
                 let first = |token: &&Token| reader.text()[token.place.clone()].starts_with("1/");
                 let line = corners.iter().find(first).unwrap().line;
@@ -278,7 +279,7 @@ pub(crate) fn case_47(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// A grid of quads as OBJ, by indices from 1 or backwards, against its nodes counted by hand.
+/// A grid of quads as OBJ, with indices from 1 or relative to the end, against directly counted nodes.
 fn quads(row: &mut Row, (columns, rows, backwards): (usize, usize, bool)) -> bool {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("quads.obj");
@@ -350,7 +351,7 @@ pub(crate) fn case_48(extent: Extent) -> Vec<Row> {
     let row = Row::new(48, "any key of JSON twice");
     rows.push(for_all(row, extent.runs(60, 2_000), any::<usize>(), |row, at| {
         let token = pick(&keys, at);
-        // The whole value again, on the line above.
+        // The value repeated on the line above.
         let start = token.place.start - 1;
         let value = value_of(&text[token.place.end + 2..]);
         let again = format!("{}\"{}\": {value},\n{}", &text[..start], token.field, &text[start..]);
@@ -378,7 +379,7 @@ pub(crate) fn case_48(extent: Extent) -> Vec<Row> {
     rows.push(row);
     let mut row = Row::new(48, "null for any number that must be there");
     for token in numbers(reader) {
-        // A deviation, a range, a noise and a residual may be unknown: null says so.
+        // A deviation, a range, a noise and a residual may be null: unknown.
         if ["deviation_n_per_m", "rank", "noise_n", "rms_force_n"].contains(&&token.field[..]) {
             continue;
         }
@@ -403,7 +404,7 @@ pub(crate) fn case_48(extent: Extent) -> Vec<Row> {
     let row = Row::new(48, "cut off anywhere");
     rows.push(for_all(row, extent.runs(60, 2_000), 1..text.trim_end().len(), |row, end| {
         let cut = &text[..end];
-        // The parser names the line where it found the end.
+        // The parser names the line where the text ends.
         let outcome = reader.refusal(&place, cut.as_bytes());
         let last = line_of(cut, cut.len());
         let holds = outcome
@@ -414,7 +415,7 @@ pub(crate) fn case_48(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// The value that a text begins with: up to the comma or line end that ends it.
+/// The value at the beginning of a text, up to a comma or line end.
 fn value_of(text: &str) -> &str {
     let mut depth = 0;
     for (at, character) in text.char_indices() {

@@ -1,4 +1,4 @@
-//! Cases 53 to 55: what goes on around a run. Another run, more or fewer threads, nobody who reads what it says.
+//! Cases 53 to 55: the environment of a run: a concurrent run, the number of threads, closed output streams.
 
 use crate::fault::{PROGRAM, Tree, names, small_set, tree};
 use crate::table::{Extent, Row};
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The commands that write a folder into `out`, on a small set, by name.
+/// The commands that write a folder `out` from a small set, by name.
 fn writers() -> Vec<(&'static str, Vec<String>)> {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
     let fixture = |name: &str| fixtures.join(name).display().to_string();
@@ -37,14 +37,14 @@ fn writers() -> Vec<(&'static str, Vec<String>)> {
     ]
 }
 
-/// Those of them that a few runs can afford.
+/// The commands cheap enough for the quick suite.
 fn affordable(extent: Extent) -> Vec<(&'static str, Vec<String>)> {
     let slow = ["compare", "study"];
     let chosen = |name: &str| extent == Extent::Full || !slow.contains(&name);
     writers().into_iter().filter(|(name, _)| chosen(name)).collect()
 }
 
-/// The small set, a fit of it in `known`, and a tensile machine's table.
+/// A folder with the small set, a fit of it in `known`, and a tensile machine's table.
 fn workshop() -> tempfile::TempDir {
     let folder = small_set();
     let table = "branch,clamp_distance_m,force_N\n0,0.080,0\n0,0.084,0.2\n0,0.088,0.42\n0,0.092,0.68\n";
@@ -61,7 +61,7 @@ fn command<S: AsRef<std::ffi::OsStr>>(within: &Path, arguments: &[S]) -> Command
     command
 }
 
-/// Two runs, one output folder: the second ends before it has computed anything, and harms nothing.
+/// Two runs with one output folder: the second ends before it computes anything, and does no harm.
 pub(crate) fn case_53(extent: Extent) -> Vec<Row> {
     let folder = workshop();
     let out = folder.path().join("out");
@@ -89,7 +89,7 @@ pub(crate) fn case_53(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// The same bytes on any number of threads.
+/// Output is identical for any number of threads.
 pub(crate) fn case_54(extent: Extent) -> Vec<Row> {
     let folder = small_set();
     let denim = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/cotton-denim");
@@ -122,7 +122,7 @@ pub(crate) fn case_54(extent: Extent) -> Vec<Row> {
     sets.into_iter().map(run).collect()
 }
 
-/// Standard output or standard error closed, or without a reader: the result is that of a run with both.
+/// Standard output or standard error closed or without a reader: the result is that of a normal run.
 pub(crate) fn case_55(extent: Extent) -> Vec<Row> {
     let folder = workshop();
     let out = folder.path().join("out");
@@ -182,7 +182,7 @@ pub(crate) fn case_55(extent: Extent) -> Vec<Row> {
     rows
 }
 
-/// The same files with the same bytes; of a study, whose figures are of wall times, the same files.
+/// True if files and bytes are the same; of a study, which contains wall times, only the files.
 fn is_same(name: &str, found: Option<Tree>, expected: &Option<Tree>) -> bool {
     let files = |tree: &Option<Tree>| tree.as_ref().map(|tree| tree.keys().cloned().collect::<Vec<_>>());
     match name == "study" {

@@ -1,18 +1,18 @@
-//! The table of the stability suite: what was tried, how often, and how it ended.
+//! The table of the stability suite: conditions, runs and results.
 
 use std::fmt;
 
-/// How much is run.
+/// Extent of a run of the suite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Extent {
-    /// In seconds, with every test run.
+    /// Takes seconds; part of every test run.
     Quick,
-    /// All of it, in minutes.
+    /// Complete; takes minutes.
     Full,
 }
 
 impl Extent {
-    /// How many of something.
+    /// Number of runs.
     pub(crate) fn runs(self, quick: u32, full: u32) -> u32 {
         match self {
             Self::Quick => quick,
@@ -21,28 +21,28 @@ impl Extent {
     }
 }
 
-/// One distinct case: a number of the list, under one condition, over a range of inputs.
+/// One case under one condition, over a range of inputs.
 #[derive(Debug, Clone)]
 pub(crate) struct Row {
-    /// Its number in the list of docs/stability.md.
+    /// Number in the list of docs/stability.md.
     pub(crate) case: u8,
-    /// Under which condition: model, scene, stiffness ratio, …
+    /// Condition: model, scene, stiffness ratio, …
     pub(crate) condition: String,
-    /// What is measured: `imbalance`, `relative error`, …; empty where a run either holds or does not.
+    /// Measured quantity: `imbalance`, `relative error`, …; empty if a run only holds or does not.
     pub(crate) measure: &'static str,
-    /// What the measure must not exceed.
+    /// Limit of the measure.
     pub(crate) limit: f64,
-    /// The worst of all runs; 0 before the first.
+    /// Worst measure of all runs; 0 before the first.
     pub(crate) worst: f64,
-    /// Inputs tried.
+    /// Number of inputs tried.
     pub(crate) runs: u64,
-    /// Those that did what they should.
+    /// Number of runs that passed.
     pub(crate) survived: u64,
-    /// Equilibria whose tolerance was rounding's.
+    /// Equilibria with a tolerance set by rounding.
     pub(crate) by_rounding: u64,
-    /// Most iterations of a run; 0 where nothing iterates.
+    /// Largest number of iterations of a run; 0 if nothing iterates.
     pub(crate) iterations: usize,
-    /// The first that did not.
+    /// The first failure.
     pub(crate) failure: Option<String>,
 }
 
@@ -73,7 +73,7 @@ impl Row {
         }
     }
 
-    /// One more run; it survives if it holds.
+    /// Adds a run, which survives if it holds.
     pub(crate) fn holds(&mut self, holds: bool, failure: impl FnOnce() -> String) -> bool {
         self.runs += 1;
         self.survived += u64::from(holds);
@@ -83,7 +83,7 @@ impl Row {
         holds
     }
 
-    /// One more run with its measure; it survives if that is within the limit. A NaN is not.
+    /// Adds a run with its measure, which survives if that is within the limit; NaN is not.
     pub(crate) fn measure(&mut self, measure: f64, input: impl FnOnce() -> String) -> bool {
         if measure.is_nan() || measure > self.worst {
             self.worst = measure;
@@ -92,19 +92,19 @@ impl Row {
         self.holds(measure <= limit, || format!("{what} {measure:.3e} above {limit:.0e}: {}", input()))
     }
 
-    /// True if every run survived, and there was one.
+    /// True if there was at least one run and all survived.
     pub(crate) fn is_green(&self) -> bool {
         self.runs > 0 && self.survived == self.runs
     }
 }
 
-/// As a row of the table in docs/stability.md.
+/// Formats a row of the table in docs/stability.md.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = |count: u64| if count == 0 { String::new() } else { count.to_string() };
         let worst = match self.measure {
             "" => String::new(),
-            // A share of a tolerance; what is within it must not be rounded to it.
+            // A share of a tolerance: with more digits, so that a value within it is not rounded up to it.
             measure if self.limit == 1.0 => format!("{measure} {:.3} of 1", self.worst),
             measure => format!("{measure} {:.1e} of {:.0e}", self.worst, self.limit),
         };
@@ -131,9 +131,9 @@ pub(crate) const SUMMARY: &str = "\
 | case | | conditions | runs | survived | nearest to what is allowed | most iterations | decided by rounding |
 |---|---|---|---|---|---|---|---|";
 
-/// All conditions of a case in one row; of its measures that which comes nearest to its limit.
+/// All conditions of a case in one row, with the measure nearest to its limit.
 ///
-/// * `name` — of its test, `case_22_stiff_against_soft`
+/// * `name` — name of the test, such as `case_22_stiff_against_soft`
 pub(crate) fn summary(name: &str, rows: &[Row]) -> String {
     let sum = |figure: fn(&Row) -> u64| rows.iter().map(figure).sum::<u64>();
     let [_, number, title] = std::array::from_fn(|part| name.splitn(3, '_').nth(part).unwrap_or_default());
@@ -155,10 +155,10 @@ pub(crate) fn summary(name: &str, rows: &[Row]) -> String {
     )
 }
 
-/// Fails with the first failure of every row that is not green.
+/// Panics with the first failure of every row that is not green.
 ///
 /// # Panics
-/// If a row is not, or there is none.
+/// If a row is not green, or there is no row.
 pub(crate) fn assert_green(rows: &[Row]) {
     assert!(!rows.is_empty(), "no row");
     let red = rows.iter().filter(|row| !row.is_green());

@@ -1,4 +1,4 @@
-//! Where the numbers and names of a text stand: what a damage is aimed at.
+//! Positions of numbers and names in a text, as targets of damage.
 
 use crate::readers::{Form, Reader};
 use std::ops::Range;
@@ -6,22 +6,22 @@ use std::ops::Range;
 /// A number, or the name of a column or key.
 #[derive(Debug, Clone)]
 pub(crate) struct Token {
-    /// Its bytes.
+    /// Range of bytes.
     pub(crate) place: Range<usize>,
-    /// Its line, from 1.
+    /// Line, counted from 1.
     pub(crate) line: usize,
-    /// The column, key or keyword that it belongs to.
+    /// Column, key or keyword it belongs to.
     pub(crate) field: String,
 }
 
 impl Token {
-    /// The text with something else in its place.
+    /// Replaces the token in the text.
     pub(crate) fn replaced(&self, text: &str, by: &str) -> String {
         format!("{}{by}{}", &text[..self.place.start], &text[self.place.end..])
     }
 }
 
-/// The lines of a text, with the bytes that each starts at.
+/// Lines of a text with their starting bytes.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.split('\n').scan(0, |start, line| {
         let at = *start;
@@ -30,7 +30,7 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// The parts of a line between separators, with the bytes that each starts at; what stands in quotes is left out.
+/// Parts of a line between separators, with their starting bytes; quoted text is omitted.
 fn words<'t>(start: usize, line: &'t str, separators: &'static str) -> Vec<(usize, &'t str)> {
     let mut quoted = false;
     let mut found = Vec::new();
@@ -53,7 +53,7 @@ fn token(at: usize, word: &str, line: usize, field: &str) -> Token {
     Token { place: at..at + word.len(), line, field: field.into() }
 }
 
-/// The numbers of a file that its reader looks at.
+/// The numbers of a file that its reader uses.
 pub(crate) fn numbers(reader: &Reader) -> Vec<Token> {
     let text = reader.text();
     let header: Vec<&str> = text.lines().next().unwrap_or_default().split(',').collect();
@@ -79,7 +79,7 @@ pub(crate) fn numbers(reader: &Reader) -> Vec<Token> {
                 let keyword = words.first().map_or("", |(_, word)| *word);
                 words.iter().skip(1).for_each(|(at, word)| add(*at, word, keyword));
             }
-            // Vertices come first, and nothing is read after them.
+            // Vertices come first; the reader ignores the rest.
             Form::Ply => match &mut vertices {
                 None if line == "end_header" => vertices = Some(4),
                 None | Some(0) => {}

@@ -1,5 +1,5 @@
-//! A small measurement set of every kind of test, from closed forms: StVK cloth of constant stiffness, hinges of constant
-//! rigidity.
+//! A small measurement set with every kind of test, in closed form: StVK cloth of constant stiffness, hinges of
+//! constant rigidity.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
 
@@ -20,7 +20,7 @@ const DENSITY: f64 = 0.2;
 const GRAVITY: f64 = 9.81;
 const POSITION_NOISE: f64 = 2e-4;
 
-/// Stretch, shear, bending, and a shear once more for validation.
+/// Stretch, shear, bending, and another shear test for validation.
 pub(crate) fn full_set() -> MeasurementSet {
     let fabric = Fabric {
         name: "closed forms".into(),
@@ -60,7 +60,7 @@ fn stretch(kind: Kind) -> Sequence {
     sequence(kind, square(2), clips(bars), frames.collect())
 }
 
-/// A picture frame, seen flat: weft stays, warp leans by γ. Along each bar pulls L k sin γ.
+/// A picture frame, observed flat: weft stays, warp leans by γ. The force along each bar is L k sin γ.
 fn shear(kind: Kind) -> Sequence {
     let frames = (0..=6).map(|i| {
         let angle = 0.3 * f64::from(i) / 6.0;
@@ -77,7 +77,7 @@ fn shear(kind: Kind) -> Sequence {
         Frame {
             poses,
             cords: cords(&[-pull * weft, pull * weft, -pull * warp, pull * warp]),
-            // Heights that are all the same pass for not measured.
+            // Shapes of constant height count as not measured.
             positions: (kind == Kind::Shear)
                 .then(|| vec![Vector3::z() * 1e-6, SIDE * weft, SIDE * warp, SIDE * (weft + warp)]),
             ..Frame::default()
@@ -87,8 +87,8 @@ fn shear(kind: Kind) -> Sequence {
     sequence(kind, square(2), clips(&bars), frames.collect())
 }
 
-/// A sheet pushed over an edge, five overhangs: the heavy elastica. There is no noise; but what is said of the instruments
-/// is what a coarse grid leaves.
+/// A sheet pushed over an edge, five overhangs: the heavy elastica. No noise is added; the stated instrument noise is
+/// the error of a coarse grid.
 fn bend(kind: Kind) -> Sequence {
     let axis = usize::from(kind == Kind::BendWarp);
     let [along, across] = [[Vector3::x(), Vector3::y()], [Vector3::y(), Vector3::x()]][axis];
@@ -109,7 +109,7 @@ fn bend(kind: Kind) -> Sequence {
     Sequence { gravity, noise, table: Some(table), ..sequence(kind, mesh.clone(), Vec::new(), frames.into()) }
 }
 
-/// Way out and drop at an arc length of the elastica B θ″ = q (s − L) cos θ, clamped at the edge.
+/// Outward distance and drop at an arc length of the elastica B θ″ = q (s − L) cos θ, clamped at the edge.
 fn elastica(rigidity: f64, length: f64) -> impl Fn(f64) -> [f64; 2] {
     const STEPS: usize = 2000;
     let step = length / STEPS as f64;

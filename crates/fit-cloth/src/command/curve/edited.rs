@@ -1,4 +1,4 @@
-//! A curve that is edited: from its file and back.
+//! Reading a curve to edit and writing it back.
 
 use crate::failure::Failure;
 use crate::options::Reading;
@@ -15,7 +15,7 @@ use serde_json::json;
 use std::io::Write;
 use std::path::Path;
 
-/// The one curve to edit.
+/// Reads the one curve to edit.
 pub(super) fn one(path: &Path, reading: &Reading) -> Result<(Source, Subject), Failure> {
     let (source, mut subjects) = read(path, reading.component(), reading.model())?;
     match (subjects.pop(), subjects.is_empty()) {
@@ -23,12 +23,12 @@ pub(super) fn one(path: &Path, reading: &Reading) -> Result<(Source, Subject), F
         (last, _) => {
             let names = subjects.iter().chain(&last).map(|subject| subject.name.clone());
             let found = names.collect::<Vec<_>>().join(", ");
-            Err(Error::input(path, None, "curves", found, "--component, which names one of them").into())
+            Err(Error::input(path, None, "curves", found, "--component, to select one of them").into())
         }
     }
 }
 
-/// The text of a material with another curve in the place of one.
+/// The text of a material file with one curve replaced.
 pub(super) fn in_material(
     mut file: MaterialFile,
     subject: &Subject,
@@ -39,7 +39,7 @@ pub(super) fn in_material(
     file.to_json()
 }
 
-/// Writes an edited curve, says what it has become, and warns of its defects.
+/// Writes an edited curve, prints its range before and after, and warns of its defects.
 pub(super) fn finish(
     [input, out]: [&Path; 2],
     subject: &Subject,
@@ -60,7 +60,8 @@ pub(super) fn finish(
         let last = curve.strains()[curve.len() - 1] / subject.strain_per_unit;
         format!("{} points, to {last:.4} and {:.4} {}", curve.len(), largest_stress(curve), subject.unit)
     };
-    let sound = if defects.is_empty() { "sound" } else { "NOT sound: fit-cloth check --repair mends it" };
+    let sound =
+        if defects.is_empty() { "sound" } else { "NOT sound: repair it with fit-cloth check --repair" };
     let words = format!(
         "{} was: {}\n{:width$} is:  {}\n{sound}\nWritten to {}",
         subject.name,

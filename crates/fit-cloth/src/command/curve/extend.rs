@@ -1,4 +1,4 @@
-//! `fit-cloth curve extend`: a straight piece of stress at the end.
+//! `fit-cloth curve extend`: appends a straight piece to the stress-strain curve.
 
 use super::edited::{finish, in_material, one};
 use crate::failure::Failure;
@@ -59,7 +59,7 @@ pub struct ExtendOptions {
 /// Extends a curve.
 ///
 /// # Errors
-/// A bad file or option; what the operating system refuses.
+/// A bad file or option; I/O errors.
 pub fn run(options: &ExtendOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (source, subject) = one(&options.file, &options.reading)?;
     let scale = subject.strain_per_unit;

@@ -1,4 +1,4 @@
-//! `fit-cloth curve scale`: strains and stresses multiplied.
+//! `fit-cloth curve scale`: multiplies strains and stresses by factors.
 
 use super::edited::{finish, in_material, one};
 use crate::failure::Failure;
@@ -50,7 +50,7 @@ pub struct ScaleOptions {
 /// Scales a curve.
 ///
 /// # Errors
-/// A bad file or factor; what the operating system refuses.
+/// A bad file or factor; I/O errors.
 pub fn run(options: &ScaleOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (source, subject) = one(&options.file, &options.reading)?;
     let stress = match options.largest_stress {
@@ -63,7 +63,7 @@ pub fn run(options: &ScaleOptions, telling: Telling, output: &mut impl Write) ->
         Source::Material(file) => in_material(*file, &subject, &edited, &change),
         Source::Table(file) => {
             let scaled = file.scaled(options.strain, stress);
-            // Compression is no multiple of itself in every model.
+            // In some models the compressive side does not scale by the same factors.
             if file.is_two_sided() { scaled.with_curve(&edited) } else { scaled }.to_csv()
         }
     };

@@ -1,10 +1,10 @@
-//! Which columns and rows of a table are taken.
+//! Selection of a table's columns and rows.
 
 use clap::Args;
 use cloth_data::strip::{Column, Extension};
 use std::ops::RangeInclusive;
 
-/// The column of the extension: one of three.
+/// The column of the extension, in one of three forms.
 #[derive(Debug, Clone, Args)]
 #[group(required = true, multiple = false)]
 pub struct ExtensionOptions {
@@ -20,7 +20,7 @@ pub struct ExtensionOptions {
 }
 
 impl ExtensionOptions {
-    /// The column that was named.
+    /// The column given on the command line.
     pub(super) fn chosen(&self) -> Extension {
         let Self { separation, displacement, strain } = self.clone();
         separation
@@ -31,17 +31,17 @@ impl ExtensionOptions {
     }
 }
 
-/// `COLUMN[:UNIT]`
+/// Parses `COLUMN[:UNIT]`.
 pub(super) fn column(text: &str) -> Result<Column, String> {
     let column = Column::from(text);
-    if column.name.is_empty() { Err("a column's name is missing".into()) } else { Ok(column) }
+    if column.name.is_empty() { Err("the column name is missing".into()) } else { Ok(column) }
 }
 
-/// `FIRST-LAST` or `FIRST-`
+/// Parses `FIRST-LAST` or `FIRST-`.
 pub(super) fn rows(text: &str) -> Result<RangeInclusive<usize>, String> {
     let (first, last) =
-        text.split_once('-').ok_or("two row numbers with - between them, such as 3-90 or 3-")?;
-    let number = |text: &str| text.trim().parse().map_err(|_| format!("{text:?} is no row number"));
+        text.split_once('-').ok_or("expected two row numbers joined by -, such as 3-90 or 3-")?;
+    let number = |text: &str| text.trim().parse().map_err(|_| format!("{text:?} is not a row number"));
     let last = if last.trim().is_empty() { usize::MAX } else { number(last)? };
     Ok(number(first)?..=last)
 }

@@ -1,4 +1,4 @@
-//! `fit-cloth import strip`: a tensile machine's table into a sequence.
+//! `fit-cloth import strip`: converts a tensile machine's table into a sequence.
 
 use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::{Failure, with_option};
@@ -117,7 +117,7 @@ pub enum StripDirection {
 /// Imports a tensile machine's table.
 ///
 /// # Errors
-/// The table, the set or an option is not what it should be; the operating system refuses.
+/// A bad table, set or option; I/O errors.
 pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let test = strip_test(options);
     let mut strip = read_strip(&options.file, &test).map_err(by_option)?;
@@ -211,7 +211,7 @@ fn strip_test(options: &StripOptions) -> StripTest {
     }
 }
 
-/// Names the option that settles why a table cannot be read, or a sequence not be added to the set.
+/// Appends the option that resolves an error in reading the table or adding the sequence.
 fn by_option(error: Error) -> Error {
     let option = match &error {
         Error::Input { line: None, field, .. } => match field.as_str() {
@@ -239,7 +239,7 @@ fn by_option(error: Error) -> Error {
     with_option(error, option)
 }
 
-/// A table in the folder that is about to be replaced would be lost.
+/// Refuses a table inside the folder that would be replaced.
 fn refuse_replacing(file: &Path, place: &Path) -> Result<(), Error> {
     let (Ok(whole), Ok(replaced)) = (fs::canonicalize(file), fs::canonicalize(place)) else { return Ok(()) };
     if whole.starts_with(replaced) {
@@ -249,7 +249,7 @@ fn refuse_replacing(file: &Path, place: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Strains of the rows.
+/// Strain of every row.
 fn strains(Strip { sequence, free_length, .. }: &Strip) -> Vec<f64> {
     let pull = sequence.force_direction.unwrap_or_default();
     let shift = |pose: &Isometry3<f64>| pose.translation.vector.dot(&pull);
@@ -257,7 +257,7 @@ fn strains(Strip { sequence, free_length, .. }: &Strip) -> Vec<f64> {
     poses.map(|pose| shift(pose) / free_length).collect()
 }
 
-/// Forces of the rows along the pull, N.
+/// Force of every row along the pull, N.
 fn forces(sequence: &Sequence) -> Vec<f64> {
     let pull = sequence.force_direction.unwrap_or_default();
     sequence.frames.iter().flat_map(|frame| &frame.cords).map(|cord| cord.force.dot(&pull)).collect()
@@ -266,6 +266,6 @@ fn forces(sequence: &Sequence) -> Vec<f64> {
 fn range(values: Vec<f64>) -> [f64; 2] {
     let ends =
         values.into_iter().fold([f64::MAX, f64::MIN], |[low, high], value| [low.min(value), high.max(value)]);
-    // What rounds to zero has no sign.
+    // A value that rounds to zero is printed without a sign.
     ends.map(|end| if end.abs() < 5e-5 { 0.0 } else { end })
 }

@@ -1,4 +1,4 @@
-//! `fit-cloth import table`: force over elongation into stress over strain.
+//! `fit-cloth import table`: converts force over elongation into stress over strain.
 
 use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::Failure;
@@ -67,10 +67,10 @@ pub enum MeasureChoice {
     Shear,
 }
 
-/// Imports a table as a curve.
+/// Converts a table into a curve.
 ///
 /// # Errors
-/// The table or an option is not what it should be; the operating system refuses.
+/// A bad table or option; I/O errors.
 pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let tension = options.tension_n_per_m;
     let (measure, component, model, words) = match options.measure {
@@ -104,7 +104,8 @@ pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) ->
     }
     let strain = [file.strains[0], file.strains[file.strains.len() - 1]];
     let largest = largest_stress(&curve);
-    let sound = if defects.is_empty() { "sound" } else { "NOT sound: fit-cloth check --repair mends it" };
+    let sound =
+        if defects.is_empty() { "sound" } else { "NOT sound: repair it with fit-cloth check --repair" };
     let text = format!(
         "{} rows, strain {:.4} to {:.4}, stress up to {largest:.4} N/m: {words}\n{sound}\nWritten to {}",
         file.strains.len(),

@@ -1,30 +1,30 @@
-//! Horizontal bars with their names on the left and a note on the right.
+//! Horizontal bars with names on the left and notes on the right.
 
 use crate::plot::drawing::Drawn;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
-/// Width of the names, of the bars with their notes, and height of a row.
+/// Widths of the names and of the bars with their notes, and height of a row, in pixels.
 const NAMES: u32 = 640;
 const BARS: u32 = 900;
 const ROW: u32 = 52;
 
-/// Above and below the rows.
+/// Space above and below the rows, in pixels.
 const ABOVE: u32 = 150;
 const BELOW: u32 = 110;
 
-/// One bar, of one piece or several end to end.
+/// One bar, of one or several pieces end to end.
 pub(super) struct Bar {
     pub(super) name: String,
     pub(super) pieces: Vec<(f64, RGBColor)>,
     pub(super) note: String,
 }
 
-/// Draws bars from above, with a legend of colours beneath the title.
+/// Draws bars from top to bottom, with a legend of colours below the title.
 ///
 /// # Errors
-/// No bar, or an extent that no axis can have.
+/// No bar, or an invalid extent.
 pub(super) fn draw(
     title: &str,
     x: (&str, Range<f64>),

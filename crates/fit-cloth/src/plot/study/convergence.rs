@@ -1,4 +1,4 @@
-//! Error of the places against the size of a cell, with a line of slope two.
+//! Position error against the number of cells per side, with a line of order two.
 
 use super::extent::decades;
 use crate::plot::chart::{Axes, log_figure};
@@ -12,7 +12,7 @@ use plotters::style::Color;
 
 const COLOURS: [plotters::style::RGBColor; 4] = [BLUE, VERMILLION, GREEN, PINK];
 
-/// The scenes in the order in which they were run.
+/// The scenes in the order of the runs.
 pub(super) fn scenes(study: &Study) -> Vec<String> {
     let mut scenes: Vec<String> = Vec::new();
     for run in study.part(Part::Equilibrium) {
@@ -23,10 +23,10 @@ pub(super) fn scenes(study: &Study) -> Vec<String> {
     scenes
 }
 
-/// One model's scenes.
+/// Draws the scenes of one model.
 ///
 /// # Errors
-/// No equilibrium of it.
+/// No equilibrium of the model.
 pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
     let usual = |run: &&Run| {
         run.model == model
@@ -43,7 +43,7 @@ pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
     let axes = Axes {
         title: &title,
         x: ("cells per side", 0.8 * cells[0]..1.25 * cells[1]),
-        y: ("error of places [mm]", errors),
+        y: ("position error [mm]", errors),
     };
     log_figure(axes, |chart| {
         for (scene, colour) in scenes(study).iter().zip(COLOURS) {
@@ -63,7 +63,7 @@ pub(super) fn draw(study: &Study, model: Model) -> Drawn<String> {
     })
 }
 
-/// Cells a side.
+/// Cells per side.
 fn cell(run: &Run) -> f64 {
     (run.nodes - 1) as f64
 }

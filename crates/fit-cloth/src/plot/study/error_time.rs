@@ -1,5 +1,4 @@
-//! Error against wall time, a line a model and solver; what failed stands as crosses, along the top where
-//! it has no error.
+//! Error against wall time, a line per model and solver; failed runs are crosses, at the top if they have no error.
 
 use super::extent::decades;
 use super::style::{colour, dot};
@@ -12,14 +11,14 @@ use cloth_study::solver::Solver;
 use cloth_study::study::Study;
 use plotters::style::{BLACK, Color};
 
-/// Of the fits with all control points and frames.
+/// Draws the fits with all control points and frames.
 ///
 /// # Errors
-/// No fit at all.
+/// No fit.
 pub(super) fn of_fits(study: &Study) -> Drawn<String> {
     let fits = || study.part(Part::Fit);
     let points = fits().filter_map(|run| run.points).max();
-    // A fit that lost a frame or failed is shown too; one that was given fewer is not.
+    // A fit that lost a frame or failed is included; one that was given fewer frames is not.
     let frames = |nodes: usize| fits().filter(|run| run.nodes == nodes).map(|run| run.frames).max();
     let whole =
         |run: &&Run| run.points == points && frames(run.nodes).is_some_and(|all| 10 * run.frames > 8 * all);
@@ -29,17 +28,17 @@ pub(super) fn of_fits(study: &Study) -> Drawn<String> {
     })
 }
 
-/// Of one scene's equilibria with the usual tolerance.
+/// Draws one scene's equilibria with the default tolerance.
 ///
 /// # Errors
-/// No equilibrium at all.
+/// No equilibrium.
 pub(super) fn of_scene(study: &Study, scene: &str) -> Drawn<String> {
     let usual = |run: &&Run| run.test == scene && run.tolerance == run.solver.equilibrium().tolerance;
     let finest = study.part(Part::Equilibrium).map(|run| run.nodes).max();
     let runs: Vec<&Run> =
         study.part(Part::Equilibrium).filter(usual).filter(|run| Some(run.nodes) != finest).collect();
     let title = format!("Equilibrium, {scene}: error against run time");
-    draw(&title, "error of places [mm]", &runs, |run| run.error_position_mm)
+    draw(&title, "position error [mm]", &runs, |run| run.error_position_mm)
 }
 
 fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>) -> Drawn<String> {
@@ -47,7 +46,7 @@ fn draw(title: &str, y: &str, runs: &[&Run], error: impl Fn(&Run) -> Option<f64>
     let times = decades(runs.iter().map(|run| run.spent.seconds)).ok_or("no runs")?;
     let errors =
         decades(runs.iter().filter_map(|run| point(run)).map(|(_, error)| error)).ok_or("no errors")?;
-    // Room for what failed.
+    // Room for failed runs.
     let (times, errors) = (times, errors.start..errors.end * 2.0);
     let top = errors.end / 1.4;
     let done: Vec<&&Run> = runs.iter().filter(|run| !run.failed() && point(run).is_some()).collect();

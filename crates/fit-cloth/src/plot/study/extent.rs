@@ -1,8 +1,8 @@
-//! How far logarithmic axes reach.
+//! Extents of logarithmic axes.
 
 use std::ops::Range;
 
-/// Decades that hold all values; `None` without any above zero.
+/// Decades that contain all values; `None` if no value is above zero.
 pub(super) fn decades(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
     let (mut low, mut high) = (f64::INFINITY, 0.0f64);
     for value in values.filter(|value| *value > 0.0) {

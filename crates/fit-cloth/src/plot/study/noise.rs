@@ -1,4 +1,4 @@
-//! Curve error against noise, and the least that there can be.
+//! Curve error against noise, with the Cramér–Rao bound.
 
 use super::extent::decades;
 use crate::plot::chart::{Axes, log_figure};
@@ -23,7 +23,7 @@ pub(super) fn draw(study: &Study) -> Drawn<String> {
     log_figure(axes, |chart| {
         let groups: Vec<_> = levels.chunk_by(|a, b| a.test == b.test).collect();
         for (index, group) in groups.iter().enumerate() {
-            // Two meshes a curve: the fit's own first.
+            // Two meshes per curve: the fit's own first.
             let colour = if index < 2 { BLUE } else { VERMILLION };
             let own = index % 2 == 0;
             let style = if own { colour.filled() } else { colour.stroke_width(3) };

@@ -1,4 +1,4 @@
-//! What leaving out each part saves, and which error it causes.
+//! Time saved by omitting each part, and the error this causes.
 
 use super::bars::{self, Bar};
 use crate::plot::drawing::Drawn;
@@ -8,16 +8,16 @@ use cloth_study::run::Ending;
 use cloth_study::study::Study;
 
 /// # Errors
-/// Nothing was left out.
+/// No part was omitted.
 pub(super) fn draw(study: &Study) -> Drawn<String> {
     let bars: Vec<Bar> = study.ablation.iter().map(bar).collect();
     let lowest = bars.iter().map(|bar| bar.pieces[0].0).fold(0.0, f64::min);
     let legend = [("in by default", BLUE), ("left out by default", VERMILLION)];
-    // Notes stand beyond the longest bar.
+    // Notes are beyond the longest bar.
     let extent = lowest.max(-100.0)..190.0;
     bars::draw(
-        "What leaving out a part saves, and the error of that",
-        ("saved time [%], cut at -100", extent),
+        "Time saved by leaving out a part, and the error this causes",
+        ("time saved [%], cut off at -100", extent),
         &legend,
         &bars,
     )
@@ -38,7 +38,7 @@ fn bar(row: &Ablated) -> Bar {
     }
 }
 
-/// What rounding leaves is nothing.
+/// Rounding errors are printed as zero.
 fn digits(value: f64) -> String {
     match value.abs() {
         size if size < 1e-9 => "0".into(),

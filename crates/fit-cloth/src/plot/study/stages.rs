@@ -1,4 +1,4 @@
-//! Where the time of a fit goes: stages end to end, a bar a model and solver.
+//! Run time of a fit by stage: a bar per model and solver.
 
 use super::bars::{self, Bar};
 use crate::plot::drawing::Drawn;
@@ -9,7 +9,7 @@ use cloth_study::solver::Solver;
 use cloth_study::study::Study;
 use plotters::style::RGBColor;
 
-/// A kind of stage, its colour, and which stages it is.
+/// Name and colour of a kind of stage, and the test for its stages.
 type Kind = (&'static str, RGBColor, fn(&str) -> bool);
 
 const KINDS: [Kind; 4] = [
@@ -19,7 +19,7 @@ const KINDS: [Kind; 4] = [
     ("shear and bending again", PINK, |stage| stage.ends_with("again")),
 ];
 
-/// Of the fits on the finest grid.
+/// Draws the fits on the finest grid.
 ///
 /// # Errors
 /// No fit.
@@ -33,7 +33,7 @@ pub(super) fn draw(study: &Study) -> Drawn<String> {
                     .part(Part::Stage)
                     .filter(move |run| run.model == model && run.solver == solver && run.nodes == nodes)
             };
-            // Fits with fewer points or frames may be on the same grid: the first is the usual one.
+            // Fits with fewer points or frames may use the same grid: the first one is the default.
             let mut seen: Vec<&str> = Vec::new();
             let mut pieces = KINDS.map(|(_, colour, _)| (0.0, colour));
             for run in own() {

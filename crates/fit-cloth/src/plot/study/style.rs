@@ -1,4 +1,4 @@
-//! How models and solvers are told apart.
+//! Styles of models and solvers.
 
 use crate::plot::palette::{BLUE, GREEN, VERMILLION};
 use cloth_sim::material::Model;

@@ -1,9 +1,9 @@
 //! Numbers in the tables of a study.
 
-/// A share in per cent, three digits.
+/// A share in per cent with three digits, or a dash.
 pub(super) fn percent(share: Option<f64>) -> String {
     share.map_or("-".into(), |share| match share {
-        // So far off that it does not matter by how much.
+        // Beyond 1000 % the exact value does not matter.
         share if share > 10.0 => "> 1000 %".into(),
         share => format!("{} %", digits(100.0 * share)),
     })

@@ -1,4 +1,4 @@
-//! Equilibria: meshes, and tolerances.
+//! Equilibria on several meshes and with several tolerances.
 
 use super::digits::{digits, percent, short};
 use super::section::{Section, header};
@@ -8,12 +8,12 @@ use cloth_study::solver::Solver;
 use cloth_study::study::Study;
 use cloth_study::table;
 
-/// The equilibria with the usual tolerance of their solver.
+/// The equilibria with the default tolerance of their solver.
 fn usual(study: &Study) -> impl Iterator<Item = &Run> {
     study.part(Part::Equilibrium).filter(|run| run.tolerance == run.solver.equilibrium().tolerance)
 }
 
-/// Scenes and models, in the order in which they were run.
+/// Scenes and models in the order of the runs.
 fn ladders(study: &Study) -> Vec<(&str, Model)> {
     let mut found = Vec::new();
     for run in study.part(Part::Equilibrium) {

@@ -1,4 +1,4 @@
-//! Fits, and where their time goes.
+//! Fits and the run time of their stages.
 
 use super::digits::{digits, percent, short};
 use super::section::{Section, header};
@@ -56,7 +56,7 @@ pub(super) fn fits(study: &Study) -> Section {
     }
 }
 
-/// Seconds and curve error of a fit that came to its end.
+/// Seconds and curve error of a fit that did not fail.
 fn point(run: &Run) -> Option<[f64; 2]> {
     (!run.failed()).then_some([run.spent.seconds, run.error_curve?])
 }

@@ -1,4 +1,4 @@
-//! Error against noise.
+//! Curve error against noise.
 
 use super::digits::{digits, percent};
 use super::section::{Section, header};

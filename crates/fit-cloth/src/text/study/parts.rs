@@ -1,4 +1,4 @@
-//! What each part saves and costs.
+//! Savings and costs of each part.
 
 use super::digits::{digits, percent, short};
 use super::section::{Section, header};

@@ -1,33 +1,33 @@
-//! A table of a study, a sentence on it, and its figure.
+//! A section of a study.
 
-/// A table, what it says, and its figure.
+/// A table, its explanation and its figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Title.
     pub title: String,
-    /// What is to be seen, in plain words.
+    /// Explanation of the table.
     pub words: String,
-    /// Names of the columns.
+    /// Column names.
     pub header: Vec<String>,
     /// Cells, row by row.
     pub rows: Vec<Vec<String>>,
-    /// Name of the figure that shows it, without its ending.
+    /// Name of the figure, without its extension.
     pub plot: Option<&'static str>,
 }
 
 impl Section {
-    /// The table alone.
+    /// The table as Markdown.
     pub fn table(&self) -> String {
         markdown(&self.header.iter().map(String::as_str).collect::<Vec<_>>(), &self.rows)
     }
 }
 
-/// Names of columns.
+/// Column names as strings.
 pub(super) fn header(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| name.to_string()).collect()
 }
 
-/// Rows of cells as a Markdown table, padded so that it reads well as it stands; numbers stand on the right.
+/// A Markdown table, padded to be readable as plain text; numbers are right-aligned.
 fn markdown(header: &[&str], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());

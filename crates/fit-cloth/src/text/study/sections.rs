@@ -1,10 +1,10 @@
-//! A study in tables with a sentence each.
+//! The sections of a study.
 
 use super::section::Section;
 use super::{equilibria, fits, noise, parts};
 use cloth_study::study::Study;
 
-/// All sections, in order; what was not run has none.
+/// All sections in order; topics that were not run are omitted.
 pub fn sections(study: &Study) -> Vec<Section> {
     let all = [
         equilibria::meshes(study),
