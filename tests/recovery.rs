@@ -19,11 +19,9 @@ use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::stress_error;
 use nalgebra::{Rotation3, Vector3};
-use std::path::Path;
 
 fn denim() -> KnownFabric {
-    let text = include_str!("../fixtures/fabrics/cotton-denim.toml");
-    KnownFabric::parse(Path::new("cotton-denim.toml"), text).unwrap()
+    KnownFabric::named("cotton-denim").unwrap()
 }
 
 fn rig() -> Rig {

@@ -11,13 +11,20 @@ const GRAVITY: f64 = 9.81;
 
 /// Satin, knit, denim, wool.
 fn fabrics() -> [KnownFabric; 4] {
-    [
-        include_str!("../fixtures/fabrics/cotton-satin.toml"),
-        include_str!("../fixtures/fabrics/rayon-spandex-knit.toml"),
-        include_str!("../fixtures/fabrics/cotton-denim.toml"),
-        include_str!("../fixtures/fabrics/wool-cotton.toml"),
-    ]
-    .map(|text| KnownFabric::parse(Path::new("fabric.toml"), text).unwrap())
+    ["cotton-satin", "rayon-spandex-knit", "cotton-denim", "wool-cotton"]
+        .map(|name| KnownFabric::named(name).unwrap())
+}
+
+#[test]
+fn built_in_fabrics_are_those_of_the_fixtures() {
+    for name in KnownFabric::names() {
+        let file = format!("{}/../fixtures/fabrics/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(file).unwrap();
+        let copy = format!("{}/../crates/data/fabrics/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        assert_eq!(text, std::fs::read_to_string(copy).unwrap(), "{name}");
+    }
+    let error = KnownFabric::named("felt").unwrap_err().to_string();
+    assert!(error.contains("felt") && error.contains("one of cotton-denim, cotton-satin"), "{error}");
 }
 
 fn denim() -> KnownFabric {

@@ -67,9 +67,8 @@ fn a_sheet_that_nobody_saw_may_have_buckled_or_not() {
 fn shear_alone_holds_the_truth_of_a_sheet_that_buckles_or_says_what_it_lacks() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");
     for name in ["cotton-denim", "cotton-satin", "rayon-spandex-knit", "wool-cotton"] {
-        let path = fixtures.join("fabrics").join(name).with_extension("toml");
-        let fabric = KnownFabric::parse(&path, &std::fs::read_to_string(&path).unwrap()).unwrap();
-        let truth = fabric.curves().unwrap().get(Component::Shear).unwrap().clone();
+        let truth =
+            KnownFabric::named(name).unwrap().curves().unwrap().get(Component::Shear).unwrap().clone();
         let mut set = read_set(&fixtures.join(name)).unwrap();
         for shapes in [true, false] {
             if !shapes {

@@ -18,14 +18,12 @@ use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::finite_difference::derivative_error;
 use cloth_sim::material::{Component, Curves};
 use nalgebra::DVector;
-use std::path::Path;
 use std::sync::Arc;
 
 const YARNS: [Component; 2] = [Component::StretchWeft, Component::StretchWarp];
 
 fn denim() -> KnownFabric {
-    let text = include_str!("../fixtures/fabrics/cotton-denim.toml");
-    KnownFabric::parse(Path::new("cotton-denim.toml"), text).unwrap()
+    KnownFabric::named("cotton-denim").unwrap()
 }
 
 fn settings() -> Settings {

@@ -20,18 +20,6 @@ use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Curves, Model};
 use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use fit_cloth_tests::stress_error;
-use std::path::Path;
-
-const FABRICS: [(&str, &str); 4] = [
-    ("cotton-denim", include_str!("../fixtures/fabrics/cotton-denim.toml")),
-    ("cotton-satin", include_str!("../fixtures/fabrics/cotton-satin.toml")),
-    ("rayon-spandex-knit", include_str!("../fixtures/fabrics/rayon-spandex-knit.toml")),
-    ("wool-cotton", include_str!("../fixtures/fabrics/wool-cotton.toml")),
-];
-
-fn known((name, text): (&str, &str)) -> KnownFabric {
-    KnownFabric::parse(Path::new(name), text).unwrap()
-}
 
 fn measure(fabric: &KnownFabric, full_noise: bool) -> MeasurementSet {
     Rig { noise: full_noise, cord_hysteresis: full_noise, ..Rig::default() }.measure(fabric).unwrap()
@@ -52,8 +40,8 @@ fn error(stage: &StageReport, truth: &Curves) -> f64 {
 
 /// Fits and validates the four fabrics.
 fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
-    for source in FABRICS {
-        let fabric = known(source);
+    for name in KnownFabric::names() {
+        let fabric = KnownFabric::named(name).unwrap();
         let set = measure(&fabric, full_noise);
         let report = fit_all(&set, Model::Stvk);
         let truth = fabric.curves().unwrap();
@@ -62,7 +50,7 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
             let error = error(stage, &truth);
             println!(
                 "{:18} {component:13} noise {full_noise:5}: {:5.2} %, {} points, {:.2} s",
-                source.0,
+                name,
                 100.0 * error,
                 stage.curve.curve.len(),
                 stage.seconds
@@ -72,20 +60,15 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
                 component if component.is_stretch() => stretch,
                 _ => bending,
             };
-            assert!(stage.converged && stage.curve.observed, "{} {component}", source.0);
-            assert!(error <= limit, "{} {component}: {error}", source.0);
+            assert!(stage.converged && stage.curve.observed, "{} {component}", name);
+            assert!(error <= limit, "{} {component}: {error}", name);
         }
         // The sheet buckled; the first pass kept it flat.
         let passes = report.stages.iter().filter(|stage| stage.components == [Component::Shear]);
         let [first, second] = passes.map(|stage| error(stage, &truth)).collect::<Vec<_>>()[..] else {
             panic!("two passes over shear")
         };
-        println!(
-            "{:18} shear in the plane {:.1} %, in space {:.1} %",
-            source.0,
-            100.0 * first,
-            100.0 * second
-        );
+        println!("{:18} shear in the plane {:.1} %, in space {:.1} %", name, 100.0 * first, 100.0 * second);
         assert!(second < 0.5 * first);
         let unseen = [Kind::ComplexShear, Kind::CornerPull];
         let validation = validate(
@@ -102,14 +85,14 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
             let share = sequence.measure_share().unwrap();
             println!(
                 "{:18} {:13} {:5.2} % of the range; several equilibria in frames {:?}",
-                source.0,
+                name,
                 sequence.report.name,
                 100.0 * share,
                 sequence.report.multi_stable
             );
-            assert!(share <= 0.1, "{} {}: {share}", source.0, sequence.report.name);
+            assert!(share <= 0.1, "{} {}: {share}", name, sequence.report.name);
             // Satin is thin enough to fold in more than one way.
-            let folds = source.0 == "cotton-satin" && sequence.report.kind == Kind::ComplexShear;
+            let folds = name == "cotton-satin" && sequence.report.kind == Kind::ComplexShear;
             assert!(!folds || !sequence.report.multi_stable.is_empty());
         }
     }
@@ -117,7 +100,7 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
 
 #[test]
 fn another_sample_is_met_as_far_as_it_differs() {
-    let fabric = known(FABRICS[0]);
+    let fabric = KnownFabric::named("cotton-denim").unwrap();
     let rig = Rig { nodes: [31, 31], measured: [25, 25], frames: 6, ..Rig::default() };
     let settings = Settings { nodes: Some([15, 15]), ..Settings::default() };
     let [first, second] =

@@ -68,8 +68,7 @@ fn against_published(set: &MeasurementSet, settings: &Settings, cores: usize) ->
 
 /// Six sequences of about 50 frames each.
 fn measured() -> Result<MeasurementSet> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/fabrics/cotton-denim.toml");
-    let fabric = KnownFabric::parse(path.as_ref(), &std::fs::read_to_string(path)?)?;
+    let fabric = KnownFabric::named("cotton-denim")?;
     let rig = Rig { seed: 2012, measured: [25, 25], ..Rig::default() };
     let pulled = vec![Kind::StretchWeft, Kind::StretchWarp, Kind::Shear];
     let bent = vec![Kind::BendWeft, Kind::BendWarp, Kind::BendBias];

@@ -43,9 +43,8 @@
 //! use cloth_data::rig::{KnownFabric, Rig};
 //! use cloth_fit::stage::{Settings, Watch};
 //! use cloth_sim::material::Component;
-//! # let text = include_str!("../../../fixtures/fabrics/cotton-denim.toml");
 //!
-//! let fabric = KnownFabric::parse("cotton-denim.toml".as_ref(), text)?;
+//! let fabric = KnownFabric::named("cotton-denim")?;
 //! let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
 //! let set = Rig { sequences, nodes: [13, 13], measured: [5, 5], ..Rig::default() }.measure(&fabric)?;
 //!

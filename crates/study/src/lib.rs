@@ -12,7 +12,7 @@
 //!
 //! | Module | Role |
 //! |---|---|
-//! | [`subject`], [`fabrics`] | the subject: a measurement set, and the known fabric if there is one |
+//! | [`subject`] | the subject: a measurement set, and the known fabric if there is one |
 //! | [`extent`] | the extent of a study |
 //! | [`study`] | the whole study, from subject to rows |
 //! | [`run`], [`spent`], [`ablation`] | a row: a run with its error and cost; a part with its savings |
@@ -38,7 +38,6 @@
 pub mod ablation;
 mod equilibria;
 pub mod extent;
-pub mod fabrics;
 mod fits;
 pub mod level;
 mod mean;

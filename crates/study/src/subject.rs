@@ -1,11 +1,9 @@
 //! Subject of a study: a measurement set, and its known fabric if there is one.
 
 use crate::extent::Extent;
-use crate::fabrics::known;
 use cloth_data::error::Result;
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::rig::{KnownFabric, Rig};
-use std::path::Path;
 
 /// Fabric to measure if no set is given; also used for the scenes if a set's fabric is unknown.
 const BUILT_IN: &str = "cotton-denim";
@@ -31,10 +29,8 @@ impl Subject {
             Some((name, number)) => (name, number.parse().unwrap_or(0)),
             None => (&set.fabric.name[..], 1),
         };
-        let own = known(name).filter(|_| sample > 0);
-        let is_known = own.is_some();
-        let text = own.or(known(BUILT_IN)).unwrap_or_default();
-        let fabric = KnownFabric::parse(Path::new(name), text)?;
+        let is_known = sample > 0 && KnownFabric::names().any(|known| known == name);
+        let fabric = KnownFabric::named(if is_known { name } else { BUILT_IN })?;
         Ok(Self { set, fabric: if is_known { fabric.sample(sample) } else { fabric }, is_known })
     }
 
@@ -43,7 +39,7 @@ impl Subject {
     /// # Errors
     /// Those of [`Rig::measure`].
     pub fn built_in(extent: &Extent) -> Result<Self> {
-        let fabric = KnownFabric::parse(Path::new(BUILT_IN), known(BUILT_IN).unwrap_or_default())?;
+        let fabric = KnownFabric::named(BUILT_IN)?;
         let rig = Rig {
             sequences: vec![
                 Kind::StretchWeft,

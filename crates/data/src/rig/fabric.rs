@@ -124,7 +124,32 @@ impl KnownCurves {
     }
 }
 
+/// The built-in fabrics and their files, which `fixtures/fabrics` holds too.
+const BUILT_IN: [(&str, &str); 4] = [
+    ("cotton-denim", include_str!("../../fabrics/cotton-denim.toml")),
+    ("cotton-satin", include_str!("../../fabrics/cotton-satin.toml")),
+    ("rayon-spandex-knit", include_str!("../../fabrics/rayon-spandex-knit.toml")),
+    ("wool-cotton", include_str!("../../fabrics/wool-cotton.toml")),
+];
+
 impl KnownFabric {
+    /// Names of the built-in fabrics.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        BUILT_IN.into_iter().map(|(name, _)| name)
+    }
+
+    /// A built-in fabric.
+    ///
+    /// # Errors
+    /// A name that is not built in.
+    pub fn named(name: &str) -> Result<Self> {
+        let Some((_, text)) = BUILT_IN.into_iter().find(|(known, _)| *known == name) else {
+            let expected = format!("one of {}", Self::names().collect::<Vec<_>>().join(", "));
+            return Err(Error::Setting { field: "fabric", found: name.into(), expected });
+        };
+        Self::parse(Path::new(name), text)
+    }
+
     /// Reads a fabric file.
     ///
     /// # Errors

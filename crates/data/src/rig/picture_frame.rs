@@ -59,8 +59,7 @@ mod tests {
     /// In the plane and without weight the shear is homogeneous: every bar carries stress × length along itself.
     #[test]
     fn every_bar_takes_the_stress_along_itself() {
-        let text = include_str!("../../../../fixtures/fabrics/cotton-denim.toml");
-        let mut fabric = KnownFabric::parse("denim.toml".as_ref(), text).unwrap();
+        let mut fabric = KnownFabric::named("cotton-denim").unwrap();
         (fabric.width_m, fabric.height_m) = (0.1, 0.08);
         let curves = fabric.curves().unwrap();
         let mut test = test(&fabric, there_and_back(&[0.2], 2, 1));

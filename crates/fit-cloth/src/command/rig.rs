@@ -11,7 +11,6 @@ use cloth_data::error::Error;
 use cloth_data::frame::Kind;
 use cloth_data::io::{fill_set, read_fabric};
 use cloth_data::rig::{KINDS, KnownFabric, Rig};
-use cloth_study::fabrics;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -133,12 +132,13 @@ fn parse_test(name: &str) -> Result<Kind, String> {
 }
 
 fn known_fabric(name: &str) -> Result<KnownFabric, Failure> {
-    if let Some(text) = fabrics::known(name) {
-        return Ok(KnownFabric::parse(Path::new(name), text)?);
+    if KnownFabric::names().any(|known| known == name) {
+        return Ok(KnownFabric::named(name)?);
     }
     let path = Path::new(name);
     if !path.exists() {
-        let expected = format!("a known fabric ({}) or a fabric file", fabrics::names().join(", "));
+        let names = KnownFabric::names().collect::<Vec<_>>().join(", ");
+        let expected = format!("a known fabric ({names}) or a fabric file");
         return Err(Error::input(path, None, "--fabric", "no such file", expected).into());
     }
     Ok(KnownFabric::read(path)?)

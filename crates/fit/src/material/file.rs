@@ -330,8 +330,7 @@ mod tests {
 
     /// Two strips of denim, made up, and their stretch curves, on coarse grids.
     fn fitted() -> MaterialFile {
-        let text = include_str!("../../../../fixtures/fabrics/cotton-denim.toml");
-        let fabric = cloth_data::rig::KnownFabric::parse("cotton-denim.toml".as_ref(), text).unwrap();
+        let fabric = cloth_data::rig::KnownFabric::named("cotton-denim").unwrap();
         let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
         let rig = Rig { sequences, nodes: [9, 9], measured: [5, 5], frames: 6, ..Rig::default() };
         let set = rig.measure(&fabric).unwrap();
