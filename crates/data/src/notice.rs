@@ -16,7 +16,7 @@ pub enum Severity {
 }
 
 /// A contradiction within a sequence, or a correction made to it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Notice {
     /// Severity.
@@ -29,6 +29,21 @@ pub struct Notice {
     pub found: String,
     /// The value expected, with a remedy.
     pub expected: String,
+    /// Changes of which any one would settle it, where they can be stated as numbers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remedies: Vec<Remedy>,
+}
+
+/// A change of an import or a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Remedy {
+    /// Reading of the load cell without load, N, to be subtracted from every force.
+    Zero(f64),
+    /// Free length of a strip, m, instead of its gauge length.
+    FreeLength(f64),
+    /// A fit in which outliers count less.
+    Robust,
 }
 
 impl Notice {
@@ -62,6 +77,11 @@ impl Notice {
         Self::new(Severity::Refusal, sequence, place, found, expected)
     }
 
+    /// The same notice with remedies.
+    pub fn with(self, remedies: Vec<Remedy>) -> Self {
+        Self { remedies, ..self }
+    }
+
     /// A notice of the given severity.
     pub fn new(
         severity: Severity,
@@ -76,6 +96,7 @@ impl Notice {
             place: place.into(),
             found: found.into(),
             expected: expected.into(),
+            remedies: Vec::new(),
         }
     }
 }

@@ -9,5 +9,5 @@ pub use choice::{
     VariantChoice,
 };
 pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
-pub(crate) use flags::{refuse_within, use_threads};
+pub(crate) use flags::{STABLE, refuse_within, use_threads};
 pub use reading::Reading;

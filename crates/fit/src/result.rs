@@ -15,15 +15,17 @@ use std::path::{Path, PathBuf};
 
 /// Rejects an output folder that contains anything but an earlier result.
 ///
+/// * `field` — name of the folder in the error, such as the caller's option for it
+///
 /// # Errors
 /// A file; a folder with other content than the result of a fit (one model, or one folder per model), comparison,
 /// validation, study or simulation. Hidden files are ignored.
-pub fn check_output(folder: &Path) -> Result<()> {
+pub fn check_output(folder: &Path, field: &str) -> Result<()> {
     let refuse = |found: String| {
         Err(Error::input(
             folder,
             None,
-            "--out",
+            field,
             found,
             "a new or empty folder, or an earlier result, which is replaced",
         ))

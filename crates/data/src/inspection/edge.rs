@@ -61,23 +61,23 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
     }
     let refused = off.abs() > REFUSED * length;
     let seen = if off < 0.0 { "below the table before its edge" } else { "flat past the table's edge" };
-    notices.push(Notice {
-        severity: if refused { Severity::Refusal } else { Severity::Doubt },
-        sequence: sequence.name.clone(),
-        place: "test.toml table.edge_point_m".into(),
-        found: format!(
+    notices.push(Notice::new(
+        if refused { Severity::Refusal } else { Severity::Doubt },
+        &sequence.name,
+        "test.toml table.edge_point_m",
+        format!(
             "cloth {seen}: it starts to hang {:.1} mm {} it (median of {frames} frames; lines of vertices are {:.1} mm \
              apart)",
             1e3 * off.abs(),
             if off < 0.0 { "before" } else { "past" },
             1e3 * apart
         ),
-        expected: format!(
+        format!(
             "an edge where the cloth starts to hang: {:.1} mm {} along outward, in the axes of positions.npy",
             1e3 * off.abs(),
             if off < 0.0 { "back" } else { "on" }
         ),
-    });
+    ));
 }
 
 /// The start of the overhang.

@@ -50,12 +50,8 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         areal_density(fabric, sequence),
         material(sequence),
     ];
-    notices.extend(found.into_iter().flatten().map(|(severity, place, found, expected)| Notice {
-        severity,
-        sequence: sequence.name.clone(),
-        place: place.into(),
-        found,
-        expected,
+    notices.extend(found.into_iter().flatten().map(|(severity, place, found, expected)| {
+        Notice::new(severity, &sequence.name, place, found, expected)
     }));
 }
 

@@ -4,7 +4,7 @@ use super::goal::Goal;
 use super::journal::{program, recalled};
 use super::kinds::{has_any, nothing};
 use crate::failure::{Failure, with_option};
-use crate::options::{FitFlags, refuse_within};
+use crate::options::{FitFlags, STABLE, refuse_within};
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::page::{Fit, Frames, Page};
@@ -77,7 +77,7 @@ pub fn run(
     }
     // Notices about the measurements are the same for every model.
     for notice in results.iter().take(1).flat_map(|fitted| &fitted.report.notices) {
-        warn(telling, &notice.to_string());
+        warn(telling, &text::notice(notice));
     }
     for Fitted { report, material } in &results {
         // Given curves are checked, too.
@@ -114,7 +114,7 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
     refuse_within("--known", path, folder)?;
     let file = MaterialFile::read(path)?;
     if !flags.allow_unstable {
-        refuse_unstable(&file.curves()?, path)?;
+        refuse_unstable(&file.curves()?, path, STABLE)?;
     }
     for settings in flags.model.models().into_iter().map(|model| flags.settings(model)) {
         if file.model != settings.model {

@@ -1,7 +1,7 @@
 //! `fit-cloth simulate`: simulates a scene with a material, in motion or at rest.
 
 use crate::failure::Failure;
-use crate::options::{CompressionChoice, refuse_within};
+use crate::options::{CompressionChoice, STABLE, refuse_within};
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_simulation_plots;
@@ -85,7 +85,7 @@ impl From<FormatChoice> for ShapeFormat {
 /// Bad input; an output folder that is not a previous result; I/O errors.
 pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
     let folder = options.output_folder();
-    check_output(&folder)?;
+    check_output(&folder, "--out")?;
     for (flag, path) in [("SCENE", &options.scene), ("--material", &options.material)] {
         refuse_within(flag, path, &folder)?;
     }
@@ -100,7 +100,7 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
     let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
     let curves: Curves = curves.collect();
     if !options.allow_unstable {
-        refuse_unstable(&curves, &options.material)?;
+        refuse_unstable(&curves, &options.material, STABLE)?;
     }
     let out = Output::claim(&folder)?;
     let findings = check_curves(material.model, &curves, |_| None);

@@ -88,7 +88,7 @@ impl StudyOptions {
         }
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from("out/study"));
         use_threads(self.threads)?;
-        check_output(&folder)?;
+        check_output(&folder, "--out")?;
         let out = Output::claim(&folder)?;
         Ok((Subject::built_in(extent)?, out))
     }

@@ -83,7 +83,7 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     let text = text::validation(&set, &material, &validation);
     let text = format!("{text}\nWritten to {}", out.path().display());
     for notice in &validation.prediction.notices {
-        warn(telling, &notice.to_string());
+        warn(telling, &text::notice(notice));
     }
     if let Some(warning) = text::other_grid(&material, &validation) {
         warn(telling, &warning);

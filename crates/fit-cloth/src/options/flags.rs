@@ -12,6 +12,10 @@ use cloth_fit::stage::Settings;
 use cloth_sim::material::Model;
 use std::path::{Path, PathBuf};
 
+/// A stable curve, and the options that lead to one.
+pub(crate) const STABLE: &str =
+    "a stable curve (`fit-cloth check --repair` makes one; --allow-unstable takes it as it is)";
+
 /// Flags of every command that reads a measurement set.
 #[derive(Debug, Clone, Args)]
 pub struct SetFlags {
@@ -86,7 +90,7 @@ impl SetFlags {
     pub fn open(&self, suffix: &str) -> Result<(MeasurementSet, Output), Failure> {
         let folder = self.output_folder(suffix);
         use_threads(self.threads)?;
-        check_output(&folder)?;
+        check_output(&folder, "--out")?;
         self.refuse_inside(&folder)?;
         let set = read_set(&self.set)?;
         Ok((set, Output::claim(&folder)?))

@@ -100,7 +100,7 @@ impl Fit {
             sure: overall.sure,
             next: overall.next,
             failures: report.failures.iter().map(|failure| failure.in_words()).collect(),
-            notices: report.notices.iter().map(|notice| notice.to_string()).collect(),
+            notices: report.notices.iter().map(text::notice).collect(),
             summary: text::summary_rows(report),
             residuals: residuals.chain(more).collect(),
             curves: curves(report),

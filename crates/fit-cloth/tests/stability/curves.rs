@@ -103,7 +103,8 @@ pub(crate) fn case_02(extent: Extent) -> Vec<Row> {
 fn refused_if_falling(row: &mut Row, points: (Vec<f64>, Vec<f64>)) -> bool {
     let curve = curve(points);
     let curves: Curves = [(Component::Shear, curve.clone())].into_iter().collect();
-    let refused = refuse_unstable(&curves, Path::new("material.json")).map_err(|error| error.to_string());
+    let refused = refuse_unstable(&curves, Path::new("material.json"), "a stable curve")
+        .map_err(|error| error.to_string());
     let tangents = || samples_of(&curve).map(|strain| curve.response(strain).tangent);
     let (least, largest) = (tangents().fold(f64::MAX, f64::min), tangents().fold(f64::MIN, f64::max));
     // The largest sampled stiffness is a lower bound of the true maximum, and so is this κ.

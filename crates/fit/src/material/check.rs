@@ -40,16 +40,15 @@ pub fn check_curves(
 /// Rejects curves whose shape can make a simulation fail, whatever their unit; names the first defect.
 ///
 /// * `what` — the file that contains them
+/// * `expected` — a stable curve, in words, with the caller's own way to one
 ///
 /// # Errors
 /// A curve that is not stable.
-pub fn refuse_unstable(curves: &Curves, what: &Path) -> Result<()> {
+pub fn refuse_unstable(curves: &Curves, what: &Path, expected: &str) -> Result<()> {
     for component in curves.components() {
         let findings = curves.get(component).map(|curve| soundness::check(curve, &Context::default()));
         if let Some(finding) = findings.iter().flatten().find(|finding| finding.is_unstable()) {
             let found = format!("{finding}: {}", finding.consequence());
-            let expected =
-                "a stable curve (`fit-cloth check --repair` makes one; --allow-unstable takes it as it is)";
             return Err(Error::input(what, None, component.to_string(), found, expected));
         }
     }
@@ -70,9 +69,11 @@ mod tests {
         };
         let path = Path::new("material.json");
         // Probably another unit, but stable.
-        assert!(refuse_unstable(&with(curve(vec![1.0; 3])), path).is_ok());
-        let error = refuse_unstable(&with(curve(vec![9.0, 9.0, 1.0])), path).unwrap_err().to_string();
+        assert!(refuse_unstable(&with(curve(vec![1.0; 3])), path, "a stable curve").is_ok());
+        let error = refuse_unstable(&with(curve(vec![9.0, 9.0, 1.0])), path, "a stable curve")
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("material.json shear: found low-tangent from 0.1"), "{error}");
-        assert!(error.contains("stress falls") && error.contains("--allow-unstable"), "{error}");
+        assert!(error.contains("stress falls") && error.ends_with("expected a stable curve"), "{error}");
     }
 }

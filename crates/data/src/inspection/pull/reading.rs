@@ -163,7 +163,7 @@ impl Pull {
         expected: String,
     ) -> Notice {
         let place = format!("{} {}", self.counted, reading.number);
-        Notice { severity, sequence: self.sequence.clone(), place, found, expected }
+        Notice::new(severity, &self.sequence, place, found, expected)
     }
 }
 

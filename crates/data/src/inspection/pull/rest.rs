@@ -3,7 +3,7 @@
 use super::polynomial::Polynomial;
 use super::reading::{Pull, digits};
 use super::toe::{self, CLEAR, Toe};
-use crate::notice::{Notice, Severity};
+use crate::notice::{Notice, Remedy, Severity};
 
 /// Share of the clip travel within which a reading counts as at the gauge length, and slack is negligible.
 const NEAR: f64 = 0.01;
@@ -58,11 +58,15 @@ fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
             digits(force, 3),
             1e3 * pull.gauge
         );
-        let expected = match length.filter(|length| *length > pull.gauge) {
-            Some(length) => format!("none: the strip was slack, {}; or the zero is off", free_length(length)),
-            None => format!("none: {}", cause(pull, force, length.map(|length| (length, None)), None)),
+        let (cause, remedies) = match length.filter(|length| *length > pull.gauge) {
+            Some(length) => {
+                let slack = format!("the strip was slack, {}; or the zero is off", free_length(length));
+                (slack, vec![Remedy::FreeLength(length)])
+            }
+            None => cause(pull, force, length.map(|length| (length, None)), None),
         };
-        return Some(pull.notice(Severity::Doubt, reading, found, expected));
+        let notice = pull.notice(Severity::Doubt, reading, found, format!("none: {cause}"));
+        return Some(notice.with(remedies));
     }
     let unsure = length_error(&start, start.rises_through(0.0)?)?;
     // dσ/σ = −dL F′/F
@@ -96,7 +100,8 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
     if matters(pull, level, shift) {
         let found = format!("{} N while the strip is slack", digits(level, 3));
         let expected = format!("none: the load cell's zero is off, {}", taking_off(level));
-        notices.push(pull.notice(Severity::Doubt, first, found, expected));
+        let remedies = vec![Remedy::Zero(level)];
+        notices.push(pull.notice(Severity::Doubt, first, found, expected).with(remedies));
     }
     let gauge = format!("the gauge length, {:.2} mm", 1e3 * pull.gauge);
     // A strip that was stretched before is longer, which is not a fault.
@@ -104,12 +109,14 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
         let taut = pull.readings.iter().find(|reading| reading.separation >= length).unwrap_or(first);
         let found = format!("no force until the clamps are {:.2} mm apart", 1e3 * length);
         let expected = format!("force beyond {gauge}: the strip was slack, {}", free_length(length));
-        notices.push(pull.notice(Severity::Doubt, taut, found, expected));
+        let remedies = vec![Remedy::FreeLength(length)];
+        notices.push(pull.notice(Severity::Doubt, taut, found, expected).with(remedies));
     }
     if length < pull.gauge - near {
         let found = format!("force from a clamp distance of {:.2} mm on", 1e3 * length);
         let expected = format!("none below {gauge}: {}", free_length(length));
-        notices.push(pull.notice(Severity::Doubt, first, found, expected));
+        let remedies = vec![Remedy::FreeLength(length)];
+        notices.push(pull.notice(Severity::Doubt, first, found, expected).with(remedies));
     }
     notices
 }
@@ -136,18 +143,24 @@ fn unseen(pull: &Pull, loading: &[[f64; 2]], near: f64) -> Option<Notice> {
     let after = || toe::find(&pull.last_unloading(), pull.threshold(), near).map(|toe| toe.level);
     let found = format!("{} N at the gauge length, {:.2} mm", digits(force, 3), 1e3 * pull.gauge);
     let length = length.map(|length| (length, length_error(&start, length)));
-    let expected = format!("none: {}", cause(pull, force, length, before.or_else(after)));
-    Some(pull.notice(Severity::Doubt, reading, found, expected))
+    let (cause, remedies) = cause(pull, force, length, before.or_else(after));
+    Some(pull.notice(Severity::Doubt, reading, found, format!("none: {cause}")).with(remedies))
 }
 
 /// Explains a force at the gauge length.
 ///
 /// * `length` — free length if the force is a tension, and half of its band, m
 /// * `slack` — load cell reading of the slack strip, if observed, N
-fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Option<f64>) -> String {
+fn cause(
+    pull: &Pull,
+    force: f64,
+    length: Option<(f64, Option<f64>)>,
+    slack: Option<f64>,
+) -> (String, Vec<Remedy>) {
     let zero = format!("the load cell's zero is off, {}", taking_off(force));
     // An extrapolation that leaves the plausible range gives no length.
-    let tension = match length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length)) {
+    let length = length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length));
+    let tension = match length {
         Some((length, unsure)) => format!(
             "the strip was mounted under tension, {}, where a parabola through the first readings reaches zero{}",
             free_length(length),
@@ -158,20 +171,22 @@ fn cause(pull: &Pull, force: f64, length: Option<(f64, Option<f64>)>, slack: Opt
         }
     };
     let is = |level: f64| slack.is_some_and(|slack| (slack - level).abs() <= pull.threshold());
+    let longer: Vec<Remedy> = length.map(|(length, _)| Remedy::FreeLength(length)).into_iter().collect();
     if force < 0.0 || is(force) {
-        zero
+        (zero, vec![Remedy::Zero(force)])
     } else if is(0.0) {
-        tension
+        (tension, longer)
     } else {
-        format!("{tension}; or {zero}: its unloaded reading tells which")
+        let both = format!("{tension}; or {zero}: its unloaded reading tells which");
+        (both, [longer, vec![Remedy::Zero(force)]].concat())
     }
 }
 
 fn taking_off(force: f64) -> String {
     let force = digits(force, 3);
-    format!("{force} N are to be taken off every force (import strip --replace --zero {force})")
+    format!("subtract {force} N from every force")
 }
 
 fn free_length(length: f64) -> String {
-    format!("its free length is {:.2} mm (import strip --replace --free-length-m {length:.5})", 1e3 * length)
+    format!("its free length is {:.2} mm", 1e3 * length)
 }

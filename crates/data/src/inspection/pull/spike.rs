@@ -2,7 +2,7 @@
 
 use super::reading::{NOISE, Pull, digits};
 use crate::measure::median;
-use crate::notice::{Notice, Severity};
+use crate::notice::{Notice, Remedy, Severity};
 use std::ops::Range;
 
 /// Number of readings on each side used for comparison.
@@ -51,7 +51,7 @@ pub(super) fn notice(pull: &Pull, spikes: &[usize]) -> Option<Notice> {
         }
     };
     let found = format!("{} N far off the readings before and after{others}", digits(reading.force, 4));
-    let expected = "neighbours that agree: leave such readings out of the table, or fit with --robust, \
-                    where they hardly count";
-    Some(pull.notice(Severity::Doubt, reading, found, expected.into()))
+    let expected = "neighbours that agree: leave such readings out of the table, or use a robust fit, in which \
+                    they hardly count";
+    Some(pull.notice(Severity::Doubt, reading, found, expected.into()).with(vec![Remedy::Robust]))
 }

@@ -5,6 +5,7 @@ use crate::failure::{Failure, with_option};
 use crate::outcome::Outcome;
 use crate::output::whole;
 use crate::telling::{Telling, note_lines_above, tell, warn};
+use crate::text;
 use clap::{Args, ValueEnum};
 use cloth_data::error::Error;
 use cloth_data::frame::Sequence;
@@ -134,7 +135,7 @@ pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) ->
     let added =
         whole(|| add_to_set(&options.set, &sample, &strip.sequence, options.replace)).map_err(by_option)?;
     for notice in &notices {
-        warn(telling, &notice.to_string());
+        warn(telling, &text::notice(notice));
     }
     let forces = forces(&strip.sequence);
     let (rows, branches) = (strip.rows(), strip.branches());
