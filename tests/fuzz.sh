@@ -3,7 +3,7 @@
 #
 #   tests/fuzz.sh SECONDS [TARGET …]    so long in all, as many targets at a time as there are cores (or JOBS); with SEED
 #                                       set, the same inputs in the same order
-#   tests/fuzz.sh --merge [TARGET …]    adds what was found to the corpus, as few and small files as reach the same code
+#   tests/fuzz.sh --merge [TARGET …]    adds new inputs to the corpus: as few and small ones as reach the same code
 #
 # Exit code 1 if a target crashed, hung or took too much memory. Needs a C++ compiler, for libFuzzer; no nightly toolchain.
 set -euo pipefail
@@ -30,17 +30,24 @@ TMPDIR=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
 export TMPDIR
 trap 'rm -rf "$TMPDIR"' EXIT
 mkdir -p target/log target/crashes
+# An archive per target: hundreds of inputs of a few bytes each are one file.
+for target in "$@"; do
+    rm -rf "target/corpus/$target"
+    mkdir -p "target/corpus/$target"
+    [ ! -e "corpus/$target.tar.gz" ] || tar -xzf "corpus/$target.tar.gz" -C "target/corpus/$target"
+done
 # A header that promises a huge array must not get it.
 ulimit -v 2097152
 
 if [ "$seconds" = --merge ]; then
     for target in "$@"; do
-        mkdir -p "target/found/$target" "corpus/$target" "$TMPDIR/$target"
-        "$programs/$target" -set_cover_merge=1 -use_counters=0 "$TMPDIR/$target" "corpus/$target" "target/found/$target" \
-            > "target/log/$target" 2>&1
-        rm -r "corpus/$target"
-        cp -r "$TMPDIR/$target" "corpus/$target"
-        echo "$target: $(find "corpus/$target" -type f | wc -l) files, $(cat "corpus/$target"/* | wc -c) bytes"
+        mkdir -p "target/found/$target" "$TMPDIR/$target"
+        "$programs/$target" -set_cover_merge=1 -use_counters=0 "$TMPDIR/$target" "target/corpus/$target" \
+            "target/found/$target" > "target/log/$target" 2>&1
+        # The same inputs give the same bytes.
+        tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=644 -C "$TMPDIR/$target" -c . |
+            gzip -9n > "corpus/$target.tar.gz"
+        echo "$target: $(find "$TMPDIR/$target" -type f | wc -l) inputs, $(wc -c < "corpus/$target.tar.gz") bytes"
     done
     exit
 fi
@@ -49,7 +56,7 @@ each=$(((seconds * jobs + $# - 1) / $#))
 fuzz() {
     mkdir -p "target/found/$1"
     dictionary=$(ls "dictionaries/$1.dict" 2>/dev/null || true)
-    "$programs/$1" "target/found/$1" "corpus/$1" -max_total_time="$each" -max_len=4096 -timeout=10 -rss_limit_mb=1024 \
+    "$programs/$1" "target/found/$1" "target/corpus/$1" -max_total_time="$each" -max_len=4096 -timeout=10 -rss_limit_mb=1024 \
         ${SEED:+-seed="$SEED"} \
         ${dictionary:+-dict="$dictionary"} -artifact_prefix="target/crashes/$1-" -print_final_stats=1 > "target/log/$1" 2>&1
     echo $? > "target/log/$1.code"
