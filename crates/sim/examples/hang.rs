@@ -24,3 +24,8 @@ fn main() -> Result<()> {
     println!("{}: between its corners the sheet sags by {:.2} mm", found.status, 1e3 * sag);
     Ok(())
 }
+
+#[test]
+fn runs() {
+    main().expect("a sheet with two corners held");
+}
