@@ -7,13 +7,15 @@ mod folder;
 mod journal;
 mod lock;
 mod output;
+mod platform;
 mod work;
 
 pub use journal::Recalled;
 pub use output::OutputFolder;
 
 use crate::error::{Error, Result};
-use folder::{existing_target, parent, sync_folder};
+use folder::{existing_target, parent};
+use platform::sync_folder;
 use std::io::Write;
 use std::path::Path;
 
@@ -67,8 +69,7 @@ pub fn refuse_link(path: &Path) -> Result<()> {
 fn temporary() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    platform::user_file(&mut builder);
     builder
 }
 

@@ -1,7 +1,7 @@
-//! Resolves links of paths, and flushes folder entries to disk.
+//! Resolves links of paths.
 
 use crate::error::{Error, Result};
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Target of a path, links followed; `None` if nothing exists there.
@@ -23,9 +23,4 @@ pub(super) fn parent(path: &Path) -> PathBuf {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
         _ => PathBuf::from("."),
     }
-}
-
-/// Flushes the entries of a folder, so that they survive a power cut. Only Unix can open a folder for that.
-pub(super) fn sync_folder(folder: &Path) -> std::io::Result<()> {
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }

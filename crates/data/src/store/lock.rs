@@ -1,8 +1,9 @@
 //! Lock on a work folder. The system releases it when the run ends for any reason.
 
+use super::platform::is_at;
 use super::work;
 use crate::error::{Error, Result};
-use std::fs::{self, File, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -24,6 +25,7 @@ pub(super) fn lock(folder: &Path, path: &Path) -> Result<File> {
             opened => opened?,
         };
         match file.try_lock() {
+            // The previous holder of the lock may have removed it.
             Ok(()) if is_at(&file, &at) => return Ok(file),
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => break,
@@ -34,25 +36,10 @@ pub(super) fn lock(folder: &Path, path: &Path) -> Result<File> {
     Err(Error::input(path, None, "folder", "another run that writes there", expected))
 }
 
-/// True if a path still leads to an open file: the previous holder of the lock may have removed it.
-fn is_at(file: &File, path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let place = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
-        file.metadata().map(place).ok() == fs::symlink_metadata(path).map(place).ok()
-    }
-    // On other systems an open file cannot be removed.
-    #[cfg(not(unix))]
-    {
-        let _ = file;
-        path.exists()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_lock_whose_file_was_removed_is_no_lock() {

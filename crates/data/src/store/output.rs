@@ -12,10 +12,11 @@
 //! Remains of a killed run are cleared by the next run that gets the lock; only the journal is kept. Contents that no
 //! run leaves there, such as links, are refused.
 
-use super::folder::{existing_target, parent, sync_folder};
+use super::folder::{existing_target, parent};
 use super::journal::{Journal, Recalled};
 use super::lock::lock;
-use super::work;
+use super::platform::sync_folder;
+use super::{platform, work};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -135,15 +136,8 @@ impl OutputFolder {
 
     /// Swaps the new folder and the old one, atomically where the system supports it.
     fn exchange(&self, new: &Path) -> std::io::Result<()> {
-        #[cfg(target_os = "linux")]
-        {
-            use rustix::fs::{CWD, RenameFlags, renameat_with};
-            use rustix::io::Errno;
-            match renameat_with(CWD, new, CWD, &self.target, RenameFlags::EXCHANGE) {
-                // Some network file systems lack this.
-                Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => {}
-                done => return Ok(done?),
-            }
+        if platform::exchange(new, &self.target)? {
+            return Ok(());
         }
         let aside = self.work.join("old");
         fs::rename(&self.target, &aside)?;

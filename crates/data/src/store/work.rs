@@ -3,8 +3,11 @@
 //! Anyone with write access to the parent folder, or the author of an archive that contained it, could have planted a
 //! folder of that name with links or pipes in it.
 
+use super::folder::parent;
+use super::platform;
+
 use crate::error::{Error, Result};
-use std::fs::{self, DirBuilder, File, Metadata};
+use std::fs::{self, File, Metadata};
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -14,7 +17,7 @@ use std::path::Path;
 /// Something other than a folder, or a folder that others can write; a failed system call.
 pub(super) fn enter(work: &Path) -> Result<()> {
     let failed = |source| Error::io(work, source);
-    match private().create(work) {
+    match platform::private_folder().create(work) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
         made => return made.map_err(failed),
     }
@@ -42,13 +45,7 @@ pub(super) fn open(path: &Path) -> Result<File> {
         Err(error) if error.kind() == ErrorKind::NotFound => drop(options.create_new(true)),
         Err(error) => return Err(failed(error)),
     }
-    #[cfg(unix)]
-    {
-        use rustix::fs::OFlags;
-        use std::os::unix::fs::OpenOptionsExt;
-        // A pipe would wait for its other end.
-        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32);
-    }
+    platform::refuse_links(&mut options);
     let file = options.open(path).map_err(failed)?;
     check_file(path, &file.metadata().map_err(failed)?)?;
     Ok(file)
@@ -93,41 +90,18 @@ fn check_file(path: &Path, about: &Metadata) -> Result<()> {
     if !about.is_file() {
         return Err(planted(path, kind(about), "a file"));
     }
-    #[cfg(unix)]
-    if std::os::unix::fs::MetadataExt::nlink(about) > 1 {
+    if platform::has_other_names(about) {
         return Err(planted(path, "a file with a second name elsewhere", "a file with one"));
     }
     Ok(())
 }
 
 /// Refuses a folder owned by another user, or writable by others.
-#[cfg(unix)]
 fn check_owner(work: &Path, about: &Metadata) -> Result<()> {
-    use std::os::unix::fs::{MetadataExt, PermissionsExt};
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(".tmp").permissions(fs::Permissions::from_mode(0o700));
-    // Not every file system stores owners and permissions: a new folder shows the values for this user.
-    let own = builder.tempdir_in(super::folder::parent(work)).and_then(|own| own.path().metadata());
-    let own = own.map_err(|source| Error::io(work, source))?;
-    let written_by_others = |about: &Metadata| about.mode() & 0o022;
-    let found = match about {
-        _ if about.uid() != own.uid() => "a folder of another user",
-        _ if written_by_others(about) & !written_by_others(&own) != 0 => "a folder that others may write",
-        _ => return Ok(()),
-    };
-    Err(planted(work, found, "a folder that only you can write"))
-}
-
-#[cfg(not(unix))]
-fn check_owner(_work: &Path, _about: &Metadata) -> Result<()> {
-    Ok(())
-}
-
-fn private() -> DirBuilder {
-    let mut builder = DirBuilder::new();
-    #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder
+    match platform::foreign(about, &parent(work)).map_err(|source| Error::io(work, source))? {
+        Some(found) => Err(planted(work, found, "a folder that only you can write")),
+        None => Ok(()),
+    }
 }
 
 fn kind(about: &Metadata) -> &'static str {
