@@ -2,7 +2,7 @@
 //!
 //! | module | role |
 //! |---|---|
-//! | [`frame`] | measured data: set, sequence, frame |
+//! | [`kind`], [`frame`] | kinds of test; measured data: set, sequence, frame |
 //! | [`io`], [`store`] | sets as folders; atomic output |
 //! | [`strip`], [`rig`] | import of tensile tables; simulated measurements of known fabrics |
 //! | [`rectangle`], [`locator`] | the specimen at rest; location of points in it |
@@ -27,3 +27,8 @@ pub mod rectangle;
 pub mod rig;
 pub mod store;
 pub mod strip;
+
+/// Runs the README's example, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

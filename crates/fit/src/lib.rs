@@ -71,3 +71,8 @@ pub mod optimise;
 pub mod result;
 pub mod stage;
 pub mod twin;
+
+/// Runs the README's example, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

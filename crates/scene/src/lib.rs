@@ -36,3 +36,8 @@ pub mod droop;
 pub mod result;
 pub mod scene;
 pub mod simulation;
+
+/// Runs the README's example, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

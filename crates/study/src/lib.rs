@@ -54,3 +54,8 @@ pub mod spent;
 pub mod study;
 pub mod subject;
 pub mod table;
+
+/// Runs the README's example, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -201,7 +201,7 @@ fn a_table_says_whose_strain_it_is_over() {
         for (_, other, another) in tables.iter().filter(|(other, ..)| *other != header) {
             let error = curve(&of(header), *other, *another).unwrap_err().to_string();
             let column = header.split(',').next().unwrap();
-            let owner = format!("as {other} of {another} has");
+            let owner = format!("the columns of {other} in {another}");
             assert!(error.contains(&format!("found a column {column}")) && error.contains(&owner), "{error}");
         }
     }
