@@ -21,6 +21,7 @@ mod number;
 mod obj;
 mod ply;
 mod scale;
+pub mod schema;
 mod shape_file;
 mod shapes;
 mod source;
@@ -44,6 +45,7 @@ use crate::store::{replace_folder, write_file};
 use cloth_sim::mesh::Mesh;
 use entries::{Entries, entries};
 use nalgebra::Vector3;
+use schema::Schema;
 use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::Path;
@@ -54,12 +56,12 @@ const SEQUENCE: [&str; 7] =
 /// Unknown files with these extensions count as misspelt, other files as unrelated.
 const DATA: [&str; 5] = [".toml", ".obj", ".npy", ".csv", ".ply"];
 
-/// Reads a JSON file of the version that this program writes.
+/// Reads a JSON file of the version that this program writes, or an older one.
 ///
 /// # Errors
-/// An unreadable file; text that is not JSON, or of another version; an unknown, missing or duplicate key; a value of
+/// An unreadable file; text that is not JSON, or of a newer version; an unknown, missing or duplicate key; a value of
 /// another type. All with line and key.
-pub fn read_json<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<T> {
+pub fn read_json<T: DeserializeOwned>(path: &Path, schema: &Schema) -> Result<T> {
     json_file::parse_version(path, &read_text(path)?, schema)
 }
 

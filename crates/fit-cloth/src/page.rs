@@ -12,6 +12,7 @@ pub use sequences::Frames;
 use crate::text::Ranking;
 use cloth_data::error::{Error, Result};
 use cloth_data::io::read_json;
+use cloth_data::io::schema::Schema;
 use cloth_data::store::{refuse_link, write_file};
 use minijinja::{AutoEscape, Environment, context};
 use serde::{Deserialize, Serialize};
@@ -32,7 +33,7 @@ const CHART_LICENCE: &str = include_str!("page/vendor/uPlot.LICENSE");
 const CHART_STYLE: &str = include_str!("page/vendor/uPlot.min.css");
 
 /// Schema version of `report.json`.
-const SCHEMA: &str = "fit-cloth/report/1";
+const SCHEMA: Schema = Schema::new("report", &[]);
 
 /// File names of the page and its data.
 const PAGE: &str = "report.html";
@@ -55,7 +56,7 @@ impl Page {
     /// A page for fits of one fabric.
     pub fn new(fabric: &str, fits: Vec<Fit>, ranking: Option<Ranking>) -> Self {
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        Self { schema: SCHEMA.into(), program, fabric: fabric.into(), fits, ranking }
+        Self { schema: SCHEMA.id(), program, fabric: fabric.into(), fits, ranking }
     }
 
     /// Reads the data in a result folder.
@@ -69,7 +70,7 @@ impl Page {
             let expected = "a result folder of fit, stretch, shear, bend or compare, without --no-report; for --model all, the folder above the models' folders";
             return Err(Error::input(folder, None, DATA, found, expected));
         }
-        let page: Self = read_json(&path, SCHEMA)?;
+        let page: Self = read_json(&path, &SCHEMA)?;
         if page.fits.is_empty() {
             return Err(Error::input(&path, None, "fits", "none", "at least one"));
         }

@@ -105,7 +105,7 @@ fn the_fixture_ends_with_two_curves_and_a_residual_table() {
         );
     }
     let material = fs::read_to_string(out.join("material.json")).unwrap();
-    assert!(material.contains("fit-cloth/material/1") && !material.contains("null"));
+    assert!(material.contains("fit-cloth/material/2") && !material.contains("null"));
 }
 
 #[test]

@@ -181,7 +181,7 @@ fn motions_that_no_fit_saw_are_met_within_a_tenth() {
     // The second run replaces the first.
     let output = validate(&fixture("cotton-denim"), &out, &["--json", "--threads", "1"]);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(json["schema"], "fit-cloth/validation/1");
+    assert_eq!(json["schema"], "fit-cloth/validation/2");
     for (sequence, measure) in
         json["sequences"].as_array().unwrap().iter().zip(["aggregated-torque", "stretching-force-difference"])
     {

@@ -3,6 +3,7 @@
 use crate::scene::Scene;
 use crate::simulation::{End, Row, Simulation};
 use cloth_data::error::Result;
+use cloth_data::io::schema::Schema;
 use cloth_data::io::{ShapeFormat, write_shapes};
 use cloth_data::store::write_file;
 use cloth_fit::material::Material;
@@ -14,7 +15,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Version of `simulation.json`.
-const SCHEMA: &str = "fit-cloth/simulation/1";
+const SCHEMA: Schema = Schema::new("simulation", &[]);
 
 /// Writes a simulation to an existing folder.
 ///
@@ -66,7 +67,7 @@ fn energies(rows: &[Row]) -> String {
 pub fn simulation_json(scene: &Scene, material: &Material, simulation: &Simulation) -> Value {
     let mut json = Map::new();
     let mut put = |key: &str, value: Value| _ = json.insert(key.into(), value);
-    put("schema", json!(SCHEMA));
+    put("schema", json!(SCHEMA.id()));
     put("program", json!(concat!("fit-cloth ", env!("CARGO_PKG_VERSION"))));
     put("scene", json!(scene.name));
     put("material", json!(material.name));

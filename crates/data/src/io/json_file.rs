@@ -1,5 +1,6 @@
 //! JSON parsing with errors that name line and key.
 
+use super::schema::Schema;
 use super::source::shown;
 use crate::error::{Error, Result};
 use serde::de::value::StrDeserializer;
@@ -22,16 +23,25 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
     Ok(value)
 }
 
-/// Parses a JSON text after a check of the version in its `schema`: other versions may have other fields.
+/// Parses a JSON text after a check of the version in its `schema`; older versions are converted.
 ///
 /// # Errors
-/// As [`parse`]; another version.
-pub fn parse_version<T: DeserializeOwned>(path: &Path, text: &str, schema: &str) -> Result<T> {
-    let value: serde_json::Value = parse(path, text)?;
-    if value["schema"] != schema {
-        return Err(Error::input(path, None, "schema", shown(&value["schema"].to_string()), schema));
+/// As [`parse`]; a newer version, or another format.
+pub fn parse_version<T: DeserializeOwned>(path: &Path, text: &str, schema: &Schema) -> Result<T> {
+    let mut value: serde_json::Value = parse(path, text)?;
+    let id = value["schema"].as_str().unwrap_or_default();
+    match schema.version_of(id) {
+        Some(version) if version == schema.version() => parse(path, text),
+        Some(version) if version < schema.version() => {
+            schema.convert(version, &mut value);
+            serde_path_to_error::deserialize(value)
+                .map_err(|error| explain(path, &error.path().to_string(), error.inner()))
+        }
+        _ => {
+            let found = shown(&value["schema"].to_string());
+            Err(Error::input(path, None, "schema", found, schema.expected(id)))
+        }
     }
-    parse(path, text)
 }
 
 /// Splits the parser's message into field, found and expected.
@@ -66,7 +76,9 @@ fn explain(path: &Path, key: &str, error: &serde_json::Error) -> Error {
         let key = if key.is_empty() { "JSON" } else { key };
         (key.to_string(), found, if expected == "f64" { "a number" } else { expected })
     };
-    Error::input(path, error.line(), shown(&key), shown(found), expected.replace('`', ""))
+    // A converted value has no lines.
+    let line = Some(error.line()).filter(|line| *line > 0);
+    Error::input(path, line, shown(&key), shown(found), expected.replace('`', ""))
 }
 
 /// A value that may be absent but not null.

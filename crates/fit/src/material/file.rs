@@ -15,6 +15,7 @@ use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Fabric, MeasurementSet};
 use cloth_data::io::json_file::{parse_version, unique};
 use cloth_data::io::read_text;
+use cloth_data::io::schema::Schema;
 use cloth_data::notice::Notice;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -25,14 +26,14 @@ use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The version of the file format.
-pub const SCHEMA: &str = "fit-cloth/material/1";
+/// The file format. Version 2: notices may carry remedies.
+pub const SCHEMA: Schema = Schema::new("material", &[|_| ()]);
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialFile {
-    /// [`SCHEMA`].
+    /// The current version of [`SCHEMA`].
     pub schema: String,
     /// The model of the curves' strain measures.
     pub model: Model,
@@ -106,7 +107,7 @@ impl MaterialFile {
         let sequences = report.sequences();
         let nodes = sequences.iter().map(|(_, sequence)| (sequence.name.clone(), sequence.nodes));
         Self {
-            schema: SCHEMA.into(),
+            schema: SCHEMA.id(),
             model: settings.model,
             variant: settings.variant,
             compression: settings.compression,
@@ -137,7 +138,7 @@ impl MaterialFile {
     /// A file that cannot be read or is not a material file, with line and field.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
-        let file: Self = parse_version(path, &text, SCHEMA)?;
+        let file: Self = parse_version(path, &text, &SCHEMA)?;
         file.named_curves().map_err(|defect| defect.at(path, &text))?;
         Ok(file)
     }
@@ -302,7 +303,7 @@ mod tests {
         refused(b"{\n[}", ":2 JSON: found key must be a string");
         let long = "a\\n".repeat(1000);
         refused(format!("{{\"schema\": \"{long}\"}}").as_bytes(), "schema: found \"a\\na\\n");
-        let unknown = format!("{{\"schema\": \"{SCHEMA}\", \"{long}\": 1}}");
+        let unknown = format!("{{\"schema\": \"{}\", \"{long}\": 1}}", SCHEMA.id());
         refused(unknown.as_bytes(), "…: found an unknown key");
         std::fs::remove_file(&path).unwrap();
         let error = MaterialFile::read(&path).unwrap_err().to_string();
@@ -346,7 +347,7 @@ mod tests {
         let mut file = fitted();
         assert_eq!(
             (file.schema.as_str(), file.model, file.variant),
-            (SCHEMA, Model::Stvk, Variant::Isotropic)
+            (&*SCHEMA.id(), Model::Stvk, Variant::Isotropic)
         );
         assert_eq!((file.curves.len(), file.residuals.len(), file.failures.len()), (6, 2, 0));
         let [weft, warp] = [Component::StretchWeft, Component::StretchWarp];
@@ -402,10 +403,12 @@ mod tests {
             assert!(error.contains(words), "{error}");
         };
         refused(
-            "material/1",
+            "material/2",
             "material/9",
-            "schema: found \"fit-cloth/material/9\", expected fit-cloth/material/1",
+            "schema: found \"fit-cloth/material/9\", expected fit-cloth/material/2 or older: a newer fit-cloth wrote",
         );
+        std::fs::write(&path, good.replace("material/2", "material/1")).unwrap();
+        assert_eq!(MaterialFile::read(&path).unwrap(), fitted());
         refused("\"schema\"", "schema", "material.json:2 JSON: found ");
         refused("\"variant\"", "\"variants\"", "material.json:4 variants: found an unknown key");
         refused(

@@ -7,6 +7,7 @@ use crate::stage::Variant;
 use crate::stage::interventions::Interventions;
 use cloth_data::error::Result;
 use cloth_data::frame::MeasurementSet;
+use cloth_data::io::schema::Schema;
 use cloth_data::kind::Summary;
 use cloth_data::notice::Notice;
 use cloth_data::store::write_file;
@@ -16,12 +17,13 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// The version of the format of `validation.json`.
-const SCHEMA: &str = "fit-cloth/validation/1";
+/// The file format. Version 2: notices may carry remedies.
+const SCHEMA: Schema = Schema::new("validation", &[|_| ()]);
 
 /// `validation.json`.
 #[derive(Serialize)]
 struct File<'a> {
-    schema: &'static str,
+    schema: String,
     program: &'static str,
     model: Model,
     variant: Variant,
@@ -89,7 +91,7 @@ fn json(set: &MeasurementSet, material: &MaterialFile, validation: &Validation) 
     let prediction = &validation.prediction;
     let dropped = prediction.dropped.iter();
     let file = File {
-        schema: SCHEMA,
+        schema: SCHEMA.id(),
         program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")),
         model: material.model,
         variant: material.variant,

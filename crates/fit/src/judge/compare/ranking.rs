@@ -2,6 +2,7 @@
 
 use super::row::{Criterion, Row};
 use super::table;
+use cloth_data::io::schema::Schema;
 use serde::Serialize;
 
 /// Models and variants, best first.
@@ -36,13 +37,25 @@ impl Comparison {
     /// The text of `compare.json`.
     pub fn to_json(&self) -> String {
         // Strings and finite numbers only: serialisation cannot fail.
-        serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
+        let file = File { schema: SCHEMA.id(), ranking: self };
+        serde_json::to_string_pretty(&file).map(|text| text + "\n").unwrap_or_default()
     }
 
     /// The text of `compare.csv`: one row per entry, empty cells where a figure does not exist.
     pub fn to_csv(&self) -> String {
         table::csv(&self.rows)
     }
+}
+
+/// The format of `compare.json`.
+const SCHEMA: Schema = Schema::new("comparison", &[]);
+
+/// `compare.json`.
+#[derive(Serialize)]
+struct File<'a> {
+    schema: String,
+    #[serde(flatten)]
+    ranking: &'a Comparison,
 }
 
 /// Figures are comparable only if every variant left out the same sequences.
