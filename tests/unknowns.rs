@@ -10,7 +10,7 @@
 
 use cloth_data::frame::Kind;
 use cloth_data::rig::{KnownFabric, Rig};
-use cloth_fit::equilibria::{Objective, Simulation, SolveStart, Task, Unknown, Unknowns};
+use cloth_fit::equilibria::{Equilibria, Objective, SolveStart, Task, Unknown, Unknowns};
 use cloth_fit::optimise::gauss_newton::{Evaluation, Residuals};
 use cloth_fit::stage::{Settings, Watch, grow, stretch};
 use cloth_fit::twin::replica::Replica;
@@ -36,7 +36,7 @@ fn replicas() -> Vec<Replica> {
     stretch::plan(&YARNS).replicas(&rig.measure(&denim()).unwrap(), &settings()).unwrap()
 }
 
-fn simulation<'r>(replicas: &'r [Replica], points: &[f64], values: [&[f64]; 2]) -> Simulation<'r> {
+fn simulation<'r>(replicas: &'r [Replica], points: &[f64], values: [&[f64]; 2]) -> Equilibria<'r> {
     let unknown = |(component, values): (Component, &[f64])| {
         let negative = NegativeStrain::Green;
         let curve = StiffnessCurve::new(points.to_vec(), values.to_vec(), negative).unwrap();
@@ -50,10 +50,10 @@ fn simulation<'r>(replicas: &'r [Replica], points: &[f64], values: [&[f64]; 2]) 
         start: SolveStart::LastEquilibrium,
         robust: None,
     };
-    Simulation::new(replicas, task, unknowns, Arc::default())
+    Equilibria::new(replicas, task, unknowns, Arc::default())
 }
 
-fn evaluated(simulation: &mut Simulation<'_>, point: &[f64]) -> (DVector<f64>, nalgebra::DMatrix<f64>) {
+fn evaluated(simulation: &mut Equilibria<'_>, point: &[f64]) -> (DVector<f64>, nalgebra::DMatrix<f64>) {
     match simulation.evaluate(&DVector::from_column_slice(point), true).unwrap() {
         Evaluation::Values { residual, jacobian } => (residual, jacobian.unwrap()),
         Evaluation::Failed { reason } => panic!("{reason}"),

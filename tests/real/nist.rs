@@ -9,7 +9,9 @@
 //! standard deviations derive from it: both are shown but not checked. Options are the defaults, the same for all
 //! problems; the Jacobian is exact (complex steps).
 
-use cloth_fit::optimise::gauss_newton::{Domain, Evaluation, Options, Outcome, Residuals, minimise};
+use cloth_fit::optimise::gauss_newton::{
+    Evaluation, LinearConstraints, Options, Outcome, Residuals, minimise,
+};
 use cloth_fit::optimise::uncertainty::{Covariance, Scatter};
 use fit_cloth_tests::data;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -128,7 +130,7 @@ impl Problem {
     /// Fits from one of the starts and compares with the certified values.
     fn fit(&mut self, start: usize) -> Comparison {
         let from = self.starts[start].clone();
-        let domain = Domain::everywhere(from.len());
+        let domain = LinearConstraints::everywhere(from.len());
         let Ok(outcome) = minimise(self, &from, &domain, &Options::default(), &mut |_| {});
         let rank = Covariance::rank_of(&outcome.jacobian);
         // The points are unordered, and the residual is pure noise: s² = ‖r‖²/(n − p).

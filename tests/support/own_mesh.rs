@@ -6,7 +6,7 @@
 //! ```
 
 use cloth_data::frame::{Cord, Kind, MeasurementSet, Noise, Sequence};
-use cloth_fit::equilibria::{Objective, Settled, Simulation, SolveStart, Task, Unknowns};
+use cloth_fit::equilibria::{Equilibria, Objective, Settled, SolveStart, Task, Unknowns};
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
 use cloth_fit::twin::replica::Replica;
 use cloth_sim::material::{Component, Curves};
@@ -51,7 +51,7 @@ pub fn equilibria<T>(
         start: SolveStart::LastEquilibrium,
         robust: None,
     };
-    let mut simulation = Simulation::new(&replicas, task, Unknowns::default(), Arc::default());
+    let mut simulation = Equilibria::new(&replicas, task, Unknowns::default(), Arc::default());
     let forces = simulation.settle();
     assert!(simulation.dropped().is_empty(), "{:?}", simulation.dropped());
     simulation.settled().zip(&forces).map(|(settled, forces)| read(settled, forces)).collect()

@@ -23,6 +23,7 @@
 pub mod cli;
 pub mod command;
 pub mod failure;
+pub mod file_curve;
 mod interrupt;
 pub mod options;
 pub mod outcome;
@@ -31,7 +32,6 @@ pub mod page;
 pub mod plot;
 pub mod progress;
 mod shown;
-pub mod subject;
 pub mod telling;
 pub mod text;
 

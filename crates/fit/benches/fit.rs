@@ -14,7 +14,7 @@ use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Plan, Settings, Watch, bend, shear, stretch};
 use cloth_fit::twin::replica::Replica;
 use cloth_sim::cloth::{Cloth, ForceScale};
-use cloth_sim::element::Curvature;
+use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{self, Solver, Tolerance};
 use cloth_sim::material::{Component, Curves};
 use std::time::Instant;
@@ -172,7 +172,7 @@ fn assembly_seconds(cloth: &Cloth, curves: &Curves, x: &[f64]) -> f64 {
     let mut scale = ForceScale::new(cloth.nodes());
     fastest(|| {
         cloth.gradient(curves, x, &mut gradient, &mut scale);
-        cloth.hessian(curves, x, Curvature::Full, &mut values);
+        cloth.hessian(curves, x, HessianKind::Full, &mut values);
     })
 }
 

@@ -13,20 +13,20 @@
 //! Source: Miguel et al. 2012, eqs. 7–9, without the μI that they keep in K, except where equilibria are found by
 //! Levenberg–Marquardt (docs/model.md).
 
+mod frames;
 mod meter;
 mod observation;
 mod residual;
-mod simulation;
 mod solve;
 mod state;
 mod task;
 mod unknowns;
 mod whitening;
 
+pub use frames::{DroppedFrame, Equilibria, Settled};
 pub use meter::{Counters, Meter};
 pub use observation::Objective;
 pub(crate) use residual::without_rounding;
-pub use simulation::{DroppedFrame, Settled, Simulation};
 pub(crate) use solve::parameter_columns;
 pub use task::{SolveStart, Task};
 pub use unknowns::{Unknown, Unknowns};

@@ -61,7 +61,7 @@ pub struct FitReport {
     /// Every stage in the order it ran; of a component that was fitted twice, both.
     pub stages: Vec<StageReport>,
     /// Stages that failed; the others stand.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<FailedStage>,
     /// Contradictions within the measurements.
     pub notices: Vec<Notice>,
     /// What is known now: what was given, and what was observed.
@@ -70,7 +70,7 @@ pub struct FitReport {
 
 /// A stage that came to nothing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Failure {
+pub struct FailedStage {
     /// What it was to fit.
     pub components: Vec<Component>,
     /// First or second pass over them; where a second failed the first still counts.
@@ -79,7 +79,7 @@ pub struct Failure {
     pub reason: String,
 }
 
-impl Failure {
+impl FailedStage {
     /// As a sentence.
     pub fn in_words(&self) -> String {
         let names: Vec<String> = self.components.iter().map(|component| component.to_string()).collect();
@@ -251,7 +251,7 @@ pub fn resume(
             }
             Err(error) => {
                 let (components, pass, reason) = (plan.fitted, plan.pass, error.to_string());
-                report.failures.push(Failure { components, pass, reason });
+                report.failures.push(FailedStage { components, pass, reason });
                 first_error.get_or_insert(error);
             }
         }

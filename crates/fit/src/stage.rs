@@ -28,7 +28,7 @@ mod watch;
 
 pub use course::fit;
 pub use growth::{Growth, domain, grow, refit};
-pub use growth_rule::{GrowthRule, Measure};
+pub use growth_rule::{GrowthRule, ResidualMeasure};
 pub use level::Level;
 pub use plan::{Plan, kinds_of_all};
 pub use settings::{Constraints, FirstStiffness, Settings, Variant};

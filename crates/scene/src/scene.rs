@@ -10,7 +10,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-pub use file::Measure;
+pub use file::ShapeMeasure;
 pub use hold::Circle;
 pub use start::normal;
 
@@ -50,7 +50,7 @@ pub struct Scene {
     /// Positions of the nodes at the start, 3 per node, m.
     pub start: Vec<f64>,
     /// Measurement at the end.
-    pub measure: Option<Measure>,
+    pub measure: Option<ShapeMeasure>,
     /// Duration, s; `None` if the scene ends at rest only.
     pub duration: Option<f64>,
     /// Recorded shapes per second of motion, 1/s.
@@ -85,11 +85,11 @@ impl Scene {
         let frames_per_second = positive("frames_per_s", scene.frames_per_s)?;
         let dynamics = motion::settings(step, &scene.solver, &scene.damping, scene.wind.as_ref(), &file)?;
         let start = start::perturbed(&mesh, &held, &guided, scene.start.perturbation_m, &file)?;
-        if scene.measure == Some(Measure::DrapeCoefficient) && support.is_none() {
+        if scene.measure == Some(ShapeMeasure::DrapeCoefficient) && support.is_none() {
             let expected = "droop, or one [[held]] circle and nothing else: the support of the drape";
             return Err(file.invalid("measure", "drape-coefficient", expected));
         }
-        if scene.measure == Some(Measure::Droop) && held.is_empty() {
+        if scene.measure == Some(ShapeMeasure::Droop) && held.is_empty() {
             return Err(file.invalid("measure", "droop", "a sheet with [[held]] nodes"));
         }
         Ok(Self {

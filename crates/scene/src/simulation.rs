@@ -2,7 +2,7 @@
 
 use crate::drape::{Drape, drape};
 use crate::droop::{Droop, droop};
-use crate::scene::{Measure, Scene};
+use crate::scene::{Scene, ShapeMeasure};
 use cloth_data::error::Result;
 use cloth_fit::material::Material;
 use cloth_fit::stage::interventions::Interventions;
@@ -209,10 +209,10 @@ fn measured(scene: &Scene, simulation: Simulation) -> Result<Simulation> {
     }
     let down = down.unwrap_or(-Vector3::z());
     let held: Vec<usize> = scene.held.iter().map(|held| held.node).collect();
-    let droop = asked(Measure::Droop).then(|| droop(&scene.mesh, positions, &held, down));
+    let droop = asked(ShapeMeasure::Droop).then(|| droop(&scene.mesh, positions, &held, down));
     let drape = scene
         .support
-        .filter(|_| asked(Measure::DrapeCoefficient))
+        .filter(|_| asked(ShapeMeasure::DrapeCoefficient))
         .map(|support| drape(&scene.mesh, positions, &held, support.centre, down));
     Ok(Simulation { droop, drape, ..simulation })
 }

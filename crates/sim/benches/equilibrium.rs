@@ -6,7 +6,7 @@
 
 use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::curve::StiffnessCurve;
-use cloth_sim::element::Curvature;
+use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::error::Result;
 use cloth_sim::material::{Component, Curves, Model};
@@ -89,7 +89,7 @@ fn parts(name: &str, nodes: usize, sample: &Sample) -> Result<()> {
     let gradient_time = time(|| {
         cloth.gradient(&sample.curves, &x, &mut gradient, &mut scale);
     });
-    let hessian_time = time(|| cloth.hessian(&sample.curves, &x, Curvature::Full, &mut values));
+    let hessian_time = time(|| cloth.hessian(&sample.curves, &x, HessianKind::Full, &mut values));
     // From an equilibrium, a solve takes one gradient, one Hessian and one factorisation.
     let solve_time = time(|| {
         let again = solver.solve(&sample.curves, &mut x, &Settings::default());

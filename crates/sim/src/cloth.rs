@@ -13,7 +13,7 @@ pub use problem::Problem;
 use crate::bending::Bending;
 use crate::curve::NegativeStrain;
 use crate::element::{
-    Curvature, Element, EnergyPass, GradientPass, HessianPass, ParameterPass, Pass, PredictedStrainPass,
+    Element, EnergyPass, GradientPass, HessianKind, HessianPass, ParameterPass, Pass, PredictedStrainPass,
     StrainPass, gather,
 };
 use crate::error::{Error, Result};
@@ -236,13 +236,13 @@ impl Cloth {
     /// `values` holds, in this order: the lower triangle by columns ([`Cloth::entries`]); the derivative of each clip's
     /// summed gradient with respect to the unknowns, as 3 × clips rows of [`Cloth::unknowns`] entries; one entry to
     /// ignore.
-    pub fn hessian(&self, curves: &Curves, x: &[f64], curvature: Curvature<'_>, values: &mut Vec<f64>) {
+    pub fn hessian(&self, curves: &Curves, x: &[f64], kind: HessianKind<'_>, values: &mut Vec<f64>) {
         let len = self.entries() + self.border_len() + 1;
         let twice = if self.is_tied() { self.entries() } else { 0 };
         values.clear();
         values.resize(len + twice, 0.0);
         let targets = [&self.targets[0][..], &self.targets[1][..]];
-        self.visit(&mut HessianPass { law: curves, x, curvature, targets, values });
+        self.visit(&mut HessianPass { law: curves, x, kind, targets, values });
         // Elements list an entry and its mirror image once; it counts twice if both fall on one diagonal entry.
         (0..twice).for_each(|place| values[place] += 2.0 * values[len + place]);
         values.truncate(len);
@@ -317,7 +317,7 @@ impl Cloth {
         forces
     }
 
-    /// First-order prediction of the membrane's strains after a step, for [`Curvature::Mixed`].
+    /// First-order prediction of the membrane's strains after a step, for [`HessianKind::Mixed`].
     pub(crate) fn predicted_strains(&self, x: &[f64], step: &[f64], strains: &mut Vec<f64>) {
         self.visit(&mut PredictedStrainPass { x, step, strains });
     }

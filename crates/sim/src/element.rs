@@ -82,7 +82,7 @@ pub fn complete<const K: usize, const N: usize>(blocks: &mut [[Block<N>; K]; K])
 
 /// Matrix used for a Newton step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Curvature<'a> {
+pub enum HessianKind<'a> {
     /// The true second derivative.
     Full,
     /// Geometric part at the given strains instead of the true ones, `S` per element.
@@ -170,7 +170,7 @@ impl<L: Law> Pass for GradientPass<'_, L> {
 pub(crate) struct HessianPass<'a, L> {
     pub(crate) law: &'a L,
     pub(crate) x: &'a [f64],
-    pub(crate) curvature: Curvature<'a>,
+    pub(crate) kind: HessianKind<'a>,
     /// Per part: destination of each lower entry of each element, in the order of [`lower_entries`].
     pub(crate) targets: [&'a [u32]; 2],
     pub(crate) values: &'a mut [f64],
@@ -190,11 +190,11 @@ impl<L: Law> Pass for HessianPass<'_, L> {
             let x = gather(element.nodes(), self.x);
             let (strains, gradients) = element.evaluate(&x);
             let Stresses { mut stress, mut tangent } = self.law.stresses(&site, &strains);
-            if matches!(self.curvature, Curvature::Clamped | Curvature::Material) {
+            if matches!(self.kind, HessianKind::Clamped | HessianKind::Material) {
                 L::clamp(&mut tangent);
             }
             // The mixed strains belong to the membrane; a hinge uses its own stress.
-            if let (Curvature::Mixed(mixed), 0) = (self.curvature, part) {
+            if let (HessianKind::Mixed(mixed), 0) = (self.kind, part) {
                 let mixed = std::array::from_fn(|c| mixed[S * index + c]);
                 stress = self.law.stresses(&site, &mixed).stress;
             }
@@ -210,9 +210,9 @@ impl<L: Law> Pass for HessianPass<'_, L> {
                     blocks[a][b] = block;
                 }
             }
-            match self.curvature {
-                Curvature::Clamped => element.add_clamped(&x, &stress, &mut blocks),
-                Curvature::Material => (),
+            match self.kind {
+                HessianKind::Clamped => element.add_clamped(&x, &stress, &mut blocks),
+                HessianKind::Material => (),
                 _ => element.add_geometric(&x, &stress, &mut blocks),
             }
             complete(&mut blocks);

@@ -10,9 +10,9 @@
 //! Source: Miguel et al. 2012, §5.1 (problem); after Magisano, Leonetti and Garcea 2017 (mixed Newton).
 
 mod continuation;
-mod drive;
 mod escape;
 mod levenberg_marquardt;
+mod load_steps;
 mod minimum;
 mod newton;
 mod outcome;

@@ -18,7 +18,7 @@
 //!
 //! An unstable equilibrium is left for a lower one beside it, and flagged
 //! ([`Equilibrium::escaped`](equilibrium::Equilibrium::escaped)): another shape nearby is equally valid. If clips move
-//! far, [`Solver::drive`](equilibrium::Solver::drive) moves the sheet in as many load steps as needed. Tied nodes
+//! far, [`Solver::load_steps`](equilibrium::Solver::load_steps) moves the sheet in as many load steps as needed. Tied nodes
 //! ([`Problem::tied`](cloth::Problem::tied)) share their unknowns, like the lines of a sheet that bends as a cylinder.
 //! Guided nodes ([`Problem::guided`](cloth::Problem::guided)) move in a plane or on a line.
 //!

@@ -8,7 +8,7 @@
 
 use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::curve::StiffnessCurve;
-use cloth_sim::element::Curvature;
+use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{Settings, Solver, Status};
 use cloth_sim::finite_difference::derivative_error;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -85,7 +85,7 @@ fn the_hessian_and_the_clip_border_are_derivatives_of_the_gradient() {
         let cloth = sample.cloth().unwrap();
         let at: Vec<f64> = cloth.unknown_coordinates().iter().map(|&c| sample.start[c]).collect();
         let mut values = Vec::new();
-        cloth.hessian(&sample.curves, &sample.start, Curvature::Full, &mut values);
+        cloth.hessian(&sample.curves, &sample.start, HessianKind::Full, &mut values);
         let border = &values[cloth.entries()..values.len() - 1];
         assert_eq!(border.len(), 3 * 2 * cloth.unknowns());
         let mut rows: Vec<f64> = dense(&cloth, &values).iter().copied().collect();
@@ -155,7 +155,7 @@ fn lines_that_are_not_parallel_are_a_status_and_the_state_stays() {
         let bits = |x: &[f64]| x.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
         let mut x = start.clone();
         let solved = solver.solve(&sample.curves, &mut x, &Settings::default());
-        let driven = solver.drive(&sample.curves, &mut x, &start, &Settings::default());
+        let driven = solver.load_steps(&sample.curves, &mut x, &start, &Settings::default());
         assert_eq!([solved.status, driven.status], [status; 2]);
         assert_eq!(bits(&x), bits(&start));
     }
@@ -173,7 +173,7 @@ fn nodes_that_move_alike_share_their_unknowns() {
         let plain = sample.cloth().unwrap();
         assert_eq!(plain.unknowns() - cloth.unknowns(), 4 * if sample.planar { 2 } else { 3 });
         let mut values = Vec::new();
-        cloth.hessian(&sample.curves, &sample.start, Curvature::Full, &mut values);
+        cloth.hessian(&sample.curves, &sample.start, HessianKind::Full, &mut values);
         let value = |change: &[f64]| {
             let mut moved = vec![0.0; sample.start.len()];
             cloth.spread(change, &mut moved);
@@ -202,8 +202,8 @@ fn the_clamped_hessian_has_no_negative_eigenvalue() {
             let eigenvalues = dense(&cloth, &values).symmetric_eigenvalues();
             eigenvalues.min() / eigenvalues.max()
         };
-        assert!(lowest(Curvature::Full) < -1e-3, "{name}");
-        assert!(lowest(Curvature::Clamped) > -1e-12, "{name}");
+        assert!(lowest(HessianKind::Full) < -1e-3, "{name}");
+        assert!(lowest(HessianKind::Clamped) > -1e-12, "{name}");
     }
 }
 

@@ -6,7 +6,7 @@ use cloth_sim::cloth::Cloth;
 use cloth_sim::dynamics::{
     Damping, Integrator, LinearSolver, Motion, Newton, Settings, Status, Wind, stable_step,
 };
-use cloth_sim::element::Curvature;
+use cloth_sim::element::HessianKind;
 use cloth_sim::error::Error;
 use cloth_sim::load::{Free, Guided, Held};
 use cloth_sim::material::{Component, Model};
@@ -185,7 +185,7 @@ fn the_limit_of_runge_kutta_is_that_of_the_fastest_mode() {
     let cloth = in_motion(&sample);
     let rest = Sample::at_rest(sample.mesh.clone(), sample.model, sample.curves.clone()).start;
     let mut values = Vec::new();
-    cloth.hessian(&sample.curves, &rest, Curvature::Full, &mut values);
+    cloth.hessian(&sample.curves, &rest, HessianKind::Full, &mut values);
     let mass = |unknown: usize| cloth.masses()[cloth.unknown_coordinates()[unknown] / 3];
     let size = cloth.unknowns();
     let scaled = DMatrix::from_fn(size, size, |i, j| {

@@ -6,7 +6,7 @@
 //! ```
 
 use cloth_sim::cloth::Cloth;
-use cloth_sim::element::Curvature;
+use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{Equilibrium, Method, Settings, Solver, Status, Tolerance};
 use cloth_sim::error::{Error, Part};
 use cloth_sim::material::{Component, Curves, Model};
@@ -228,7 +228,7 @@ fn both_methods_find_the_same_equilibrium() {
 /// Dense stiffness matrix at a state.
 fn stiffness(cloth: &Cloth, curves: &Curves, x: &[f64]) -> DMatrix<f64> {
     let mut values = Vec::new();
-    cloth.hessian(curves, x, Curvature::Full, &mut values);
+    cloth.hessian(curves, x, HessianKind::Full, &mut values);
     let unknowns = cloth.unknowns();
     DMatrix::from_fn(unknowns, unknowns, |i, j| cloth.entry(i, j).map_or(0.0, |place| values[place]))
 }

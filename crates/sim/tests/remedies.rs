@@ -77,9 +77,9 @@ fn load_steps_that_are_halved_count() {
     let never = Settings { max_iterations: 0, ..Settings::default() };
     let mut solver = Solver::new(&cloth);
     let mut x = sample.start.clone();
-    let stuck = solver.drive(&sample.curves, &mut x, &target, &never);
+    let stuck = solver.load_steps(&sample.curves, &mut x, &target, &never);
     assert_eq!((stuck.status, stuck.remedies.halved), (Status::IterationLimit, 9));
-    let reached = solver.drive(&sample.curves, &mut x, &target, &Settings::default());
+    let reached = solver.load_steps(&sample.curves, &mut x, &target, &Settings::default());
     assert!(reached.converged() && reached.remedies.halved == 0, "{reached:?}");
 }
 

@@ -7,7 +7,7 @@
 //! ```
 
 use cloth_sim::cloth::{Cloth, ForceScale};
-use cloth_sim::element::Curvature;
+use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{Settings, Solver, Tolerance};
 use cloth_sim::material::{Component, Model};
 use cloth_sim::membrane::ring_one;
@@ -108,7 +108,7 @@ fn models_agree_for_small_strains() {
         sample.hold(|p| (p.x == 0.0).then_some(0));
         let cloth: Cloth = sample.cloth().unwrap();
         let mut values = Vec::new();
-        cloth.hessian(&sample.curves, &sample.start, Curvature::Full, &mut values);
+        cloth.hessian(&sample.curves, &sample.start, HessianKind::Full, &mut values);
         let size = cloth.unknowns();
         DMatrix::from_fn(size, size, |i, j| cloth.entry(i, j).map_or(0.0, |place| values[place]))
     };

@@ -13,7 +13,7 @@ use crate::extent::Extent;
 use crate::physical::Reference;
 use crate::progress::Progress;
 use crate::run::{Part, Run};
-use crate::scene::{Balanced, Scene, WEIGHT, root_mean_square_distance};
+use crate::scene::{Balanced, TestScene, WEIGHT, root_mean_square_distance};
 use crate::solver::Solver;
 use cloth_data::error::Result;
 use cloth_data::frame::Kind;
@@ -62,7 +62,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
 
 /// True if a scene suits a model. Springs do not resist the first bend: compressed as in a picture frame, their sheet
 /// has no limit shape to converge to.
-fn suits(scene: &Scene, model: Model) -> bool {
+fn suits(scene: &TestScene, model: Model) -> bool {
     !model.is_of_springs() || scene.set.sequences[0].kind != Kind::Shear
 }
 
@@ -76,7 +76,7 @@ fn settings(model: Model, solver: Solver, nodes: usize, tolerance: Option<Tolera
 }
 
 /// Scenes with one frame each.
-fn scenes(fabric: &KnownFabric, extent: &Extent) -> Result<[Scene; 4]> {
+fn scenes(fabric: &KnownFabric, extent: &Extent) -> Result<[TestScene; 4]> {
     let with = |plan: Plan, components: &[Component]| Plan { components: components.to_vec(), ..plan };
     let mut gentle = fabric.clone();
     gentle.largest_extension.stretch_weft = 0.01;
@@ -94,21 +94,24 @@ fn scenes(fabric: &KnownFabric, extent: &Extent) -> Result<[Scene; 4]> {
             Component::BendDiagonal,
         ],
     );
-    let bars = Scene::new(&gentle, Kind::ComplexShear, coarse(), shear::plan(1))?;
+    let bars = TestScene::new(&gentle, Kind::ComplexShear, coarse(), shear::plan(1))?;
     Ok([
-        Scene::new(&gentle, Kind::StretchWeft, coarse(), strip)?
+        TestScene::new(&gentle, Kind::StretchWeft, coarse(), strip)?
             .with_gravity(WEIGHT)
             .without_shapes()
             .called("sagging strip"),
-        Scene::new(&gentle, Kind::Shear, coarse(), shear::plan(2))?.without_shapes().called("picture frame"),
-        Scene::new(fabric, Kind::BendWarp, fine, bend::plan(&[Component::BendWarp], 1))?.called("cantilever"),
+        TestScene::new(&gentle, Kind::Shear, coarse(), shear::plan(2))?
+            .without_shapes()
+            .called("picture frame"),
+        TestScene::new(fabric, Kind::BendWarp, fine, bend::plan(&[Component::BendWarp], 1))?
+            .called("cantilever"),
         bars.without_shapes().called("bars in shear"),
     ])
 }
 
 /// One scene and model, on a sequence of refined meshes.
 struct Ladder<'a> {
-    scene: &'a Scene,
+    scene: &'a TestScene,
     reference: &'a Reference,
     model: Model,
     finest: Balanced,

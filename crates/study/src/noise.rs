@@ -14,7 +14,7 @@ use crate::own_mesh;
 use crate::physical::{Reference, distance, loads};
 use crate::progress::Progress;
 use crate::run::{Ending, Part, Run};
-use crate::scene::Scene;
+use crate::scene::TestScene;
 use crate::solver::Solver;
 use crate::spent::spend;
 use cloth_data::error::Result;
@@ -35,7 +35,7 @@ const ALWAYS: f64 = -1e6;
 /// One stage of a fit, with its scene and the reference for its curve.
 struct Stage {
     plan: Plan,
-    scene: Scene,
+    scene: TestScene,
     settings: Settings,
     /// The other, known curves.
     known: Knowledge,
@@ -107,7 +107,7 @@ impl Stage {
         let others = curves.components().filter(|&other| other != component);
         let others: Curves = others.filter_map(|other| Some((other, curves.get(other)?.clone()))).collect();
         Ok(Self {
-            scene: Scene::new(fabric, kind, rig, plan.clone())?,
+            scene: TestScene::new(fabric, kind, rig, plan.clone())?,
             plan,
             settings,
             known: Knowledge::exact(others),

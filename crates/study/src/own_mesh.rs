@@ -1,7 +1,7 @@
 //! Tests simulated by the fit's own model: known curves on the fit's own mesh, before noise is added.
 
 use crate::physical::Reference;
-use crate::scene::{Balanced, BalancedFrame, Scene};
+use crate::scene::{Balanced, BalancedFrame, TestScene};
 use cloth_data::error::Result;
 use cloth_data::frame::{Cord, MeasurementSet};
 use cloth_fit::stage::Settings;
@@ -10,8 +10,12 @@ use nalgebra::{Point3, Vector3};
 /// Measures the scene's set on the fit's own mesh. Shapes need a measured mesh with the simulation's nodes.
 ///
 /// # Errors
-/// Those of [`Scene::balance`].
-pub(crate) fn simulated(scene: &Scene, reference: &Reference, settings: &Settings) -> Result<MeasurementSet> {
+/// Those of [`TestScene::balance`].
+pub(crate) fn simulated(
+    scene: &TestScene,
+    reference: &Reference,
+    settings: &Settings,
+) -> Result<MeasurementSet> {
     let balanced = scene.balance(reference, settings)?;
     let mut set = scene.set.clone();
     for sequence in &mut set.sequences {

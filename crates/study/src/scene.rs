@@ -24,7 +24,7 @@ pub(crate) const IN_SPACE: Vector3<f64> = Vector3::new(0.0, 0.0, -1e-9);
 
 /// A test and the parts included in it.
 #[derive(Debug, Clone)]
-pub(crate) struct Scene {
+pub(crate) struct TestScene {
     /// Name of the scene.
     pub(crate) name: String,
     /// A set with this single sequence: how the sheet is held in every frame.
@@ -52,7 +52,7 @@ pub(crate) struct BalancedFrame {
     pub(crate) x: Vec<f64>,
 }
 
-impl Scene {
+impl TestScene {
     /// A test of the rig without noise.
     ///
     /// * `plan` — the parts included, as in a stage of a fit

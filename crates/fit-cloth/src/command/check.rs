@@ -1,16 +1,16 @@
 //! `fit-cloth check`: checks curves for simulation and repairs them.
 
 use crate::failure::Failure;
+use crate::file_curve::{FileCurve, Source, read};
 use crate::options::Reading;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::subject::{Source, Subject, read};
 use crate::telling::{Telling, tell};
 use crate::text;
 use clap::Args;
 use cloth_data::error::Error;
 use cloth_fit::judge::repair::{Repair, repair};
-use cloth_sim::curve::soundness::{Finding, Kind};
+use cloth_sim::curve::soundness::{Finding, Flaw};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) ->
         Some(out) => Some(write_repairs(options, out, source, &subjects)?),
         None => None,
     };
-    let findings: Vec<Vec<Finding>> = subjects.iter().map(Subject::findings).collect();
+    let findings: Vec<Vec<Finding>> = subjects.iter().map(FileCurve::findings).collect();
     let sound = findings.iter().flatten().all(|finding| !finding.is_defect());
     let words =
         text::check(&options.file, &subjects, &findings, repairs.as_deref(), options.repair.as_deref());
@@ -63,7 +63,7 @@ fn write_repairs(
     options: &CheckOptions,
     out: &Path,
     source: Source,
-    subjects: &[Subject],
+    subjects: &[FileCurve],
 ) -> Result<Vec<Repair>, Failure> {
     let repairs: Vec<Repair> = subjects
         .iter()
@@ -94,17 +94,17 @@ fn write_repairs(
 
 fn json(
     options: &CheckOptions,
-    subjects: &[Subject],
+    subjects: &[FileCurve],
     findings: &[Vec<Finding>],
     repairs: Option<&[Repair]>,
 ) -> Value {
-    let curve = |(index, subject): (usize, &Subject)| {
+    let curve = |(index, subject): (usize, &FileCurve)| {
         let scale = subject.strain_per_unit;
         let finding = |finding: &Finding| {
             // Stiffnesses are converted to the file's strain; ratios and shares are dimensionless. JSON has no
             // infinity.
             let factor =
-                if matches!(finding.kind, Kind::TangentRatio | Kind::Unvisited) { 1.0 } else { scale };
+                if matches!(finding.kind, Flaw::TangentRatio | Flaw::Unvisited) { 1.0 } else { scale };
             let strains =
                 finding.strains.map(|strain| Some(strain / scale).filter(|strain| strain.is_finite()));
             json!({

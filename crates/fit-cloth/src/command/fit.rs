@@ -16,7 +16,7 @@ use cloth_data::error::Error;
 use cloth_data::frame::MeasurementSet;
 use cloth_data::inspection::inspect;
 use cloth_data::notice::Notice;
-use cloth_fit::incremental::{self, Failure as Failed, Finished, FitReport, Memory};
+use cloth_fit::incremental::{self, FailedStage, Finished, FitReport, Memory};
 use cloth_fit::material::check::{check_material, refuse_unstable};
 use cloth_fit::material::file::MaterialFile;
 use cloth_fit::result::write_result;
@@ -83,7 +83,7 @@ pub fn run(
         // Given curves are checked, too.
         warn_of_defects(telling, &report.model.to_string(), &check_material(material)?);
         // The reason for refusing a sequence has been printed already.
-        let is_said = |failure: &&Failed| report.notices.iter().any(|n| n.to_string() == failure.reason);
+        let is_said = |failure: &&FailedStage| report.notices.iter().any(|n| n.to_string() == failure.reason);
         for failure in report.failures.iter().filter(|failure| !is_said(failure)) {
             warn(telling, &format!("{}: {}", report.model, failure.in_words()));
         }

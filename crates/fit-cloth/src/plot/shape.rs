@@ -4,7 +4,7 @@ use super::drawing::Drawn;
 use super::painter::Painter;
 use super::picture::{self, Picture};
 use super::view::View;
-use cloth_scene::scene::{Circle, Measure, Scene};
+use cloth_scene::scene::{Circle, Scene, ShapeMeasure};
 use cloth_scene::simulation::{End, Frame, Simulation};
 use nalgebra::Vector3;
 
@@ -13,7 +13,7 @@ const WIDTH: f64 = 560.0;
 
 /// Shapes at the start, a third, two thirds and the end; for a drape, the last from the side and from above.
 pub(super) fn draw(scene: &Scene, simulation: &Simulation) -> Drawn<String> {
-    let support = scene.support.filter(|_| scene.measure == Some(Measure::DrapeCoefficient));
+    let support = scene.support.filter(|_| scene.measure == Some(ShapeMeasure::DrapeCoefficient));
     let view = View::of(&scene.mesh, scene.gravity);
     let mut panels: Vec<(String, View, &Frame)> = match simulation.end {
         End::Rest(_) => simulation.frames.iter().map(|frame| (title(frame), view, frame)).collect(),

@@ -1,9 +1,9 @@
 //! The result of a check: a table of findings, the repairs, a verdict.
 
 use super::list::list;
-use crate::subject::Subject;
+use crate::file_curve::FileCurve;
 use cloth_fit::judge::repair::Repair;
-use cloth_sim::curve::soundness::{Finding, Kind};
+use cloth_sim::curve::soundness::{Finding, Flaw};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use std::path::Path;
 /// * `repairs` — one per subject, if requested and written to `out`
 pub fn check(
     file: &Path,
-    subjects: &[Subject],
+    subjects: &[FileCurve],
     findings: &[Vec<Finding>],
     repairs: Option<&[Repair]>,
     out: Option<&Path>,
@@ -42,7 +42,7 @@ pub fn check(
 }
 
 /// Describes a repair.
-pub fn repaired(subject: &Subject, repair: &Repair) -> String {
+pub fn repaired(subject: &FileCurve, repair: &Repair) -> String {
     if repair.is_unchanged() {
         return "sound, unchanged".into();
     }
@@ -56,14 +56,14 @@ pub fn repaired(subject: &Subject, repair: &Repair) -> String {
     )
 }
 
-fn row(subject: &Subject, finding: &Finding) -> String {
+fn row(subject: &FileCurve, finding: &Finding) -> String {
     let scale = subject.strain_per_unit;
     let [low, high] = finding.strains.map(|strain| strain / scale);
     let interval =
         if high.is_finite() { format!("{low:.4} to {high:.4}") } else { format!("{low:.4} and beyond") };
     let [value, limit] = match finding.kind {
-        Kind::Unvisited => [format!("{:.0} %", 100.0 * finding.value), "-".into()],
-        Kind::TangentRatio => [finding.value, finding.limit].map(|ratio| format!("{ratio:.2e}")),
+        Flaw::Unvisited => [format!("{:.0} %", 100.0 * finding.value), "-".into()],
+        Flaw::TangentRatio => [finding.value, finding.limit].map(|ratio| format!("{ratio:.2e}")),
         _ => [finding.value, finding.limit].map(|stiffness| format!("{:.2e}", scale * stiffness)),
     };
     let (kind, severity) = (finding.kind, finding.severity());
@@ -71,12 +71,12 @@ fn row(subject: &Subject, finding: &Finding) -> String {
 }
 
 /// Range of the control points.
-fn range(subject: &Subject) -> String {
+fn range(subject: &FileCurve) -> String {
     let strains = subject.curve.strains();
     format!("0.0000 to {:.4}", strains[strains.len() - 1] / subject.strain_per_unit)
 }
 
-fn verdict(file: &Path, subjects: &[Subject], findings: &[Vec<Finding>], out: Option<&Path>) -> String {
+fn verdict(file: &Path, subjects: &[FileCurve], findings: &[Vec<Finding>], out: Option<&Path>) -> String {
     let defects = findings.iter().flatten().filter(|finding| finding.is_defect()).count();
     let bad = subjects.iter().zip(findings).filter(|(_, found)| found.iter().any(Finding::is_defect));
     let names = list(bad.map(|(subject, _)| &subject.name));

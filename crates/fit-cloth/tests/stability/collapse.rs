@@ -55,7 +55,7 @@ fn without_length(
     sample.place(|p| Vector3::new(squeeze(p.x, 1), squeeze(p.y, 2), p.z));
     let cloth = sample.cloth().unwrap();
     let mut values = Vec::new();
-    cloth.hessian(&sample.curves, &sample.start, cloth_sim::element::Curvature::Full, &mut values);
+    cloth.hessian(&sample.curves, &sample.start, cloth_sim::element::HessianKind::Full, &mut values);
     let energy = cloth.energy(&sample.curves, &sample.start);
     let (forces, _) = balance::forces(&cloth, &sample.curves, &sample.start);
     let finite = energy.is_finite()

@@ -4,7 +4,7 @@ use crate::property::for_all;
 use crate::table::{Extent, Row};
 use cloth_fit::judge::repair::repair;
 use cloth_fit::material::check::refuse_unstable;
-use cloth_sim::curve::soundness::{Context, Finding, Kind, LEAST_TANGENT, MEMBRANE_STIFFNESS, check};
+use cloth_sim::curve::soundness::{Context, Finding, Flaw, LEAST_TANGENT, MEMBRANE_STIFFNESS, check};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::error::Error;
 use cloth_sim::material::{Component, Curves, Model};
@@ -54,7 +54,7 @@ pub(crate) fn case_01(extent: Extent) -> Vec<Row> {
                 let found: Vec<Finding> = check(&curve, &Context::default());
                 let listed = |strain: f64| {
                     found.iter().any(|finding| {
-                        finding.kind == Kind::NegativeStiffness
+                        finding.kind == Flaw::NegativeStiffness
                             && (finding.strains[0]..=finding.strains[1]).contains(&strain)
                     })
                 };
@@ -116,8 +116,8 @@ fn refused_if_falling(row: &mut Row, points: (Vec<f64>, Vec<f64>)) -> bool {
             let really = finding.is_some_and(|finding| {
                 let middle = finding.strains[0] + 0.5 * (finding.strains[1] - finding.strains[0]).min(1.0);
                 match finding.kind {
-                    Kind::NegativeStiffness => curve.stiffness(middle) < 0.0,
-                    Kind::TangentRatio => largest > 0.5e4 * least,
+                    Flaw::NegativeStiffness => curve.stiffness(middle) < 0.0,
+                    Flaw::TangentRatio => largest > 0.5e4 * least,
                     _ => curve.response(middle).tangent <= finding.limit,
                 }
             });

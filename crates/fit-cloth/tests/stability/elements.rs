@@ -60,7 +60,7 @@ fn compressed(
     let mut x = sample.start.clone();
     let mut found = solver.solve(&sample.curves, &mut x, &Settings::default());
     if driven {
-        found = solver.drive(&sample.curves, &mut x, &patch(share).start, &Settings::default());
+        found = solver.load_steps(&sample.curves, &mut x, &patch(share).start, &Settings::default());
     }
     let inverted = sample.mesh.triangles.iter().find(|triangle| {
         let [a, b, c] = triangle.map(|node| Vector3::from_column_slice(&x[3 * node..3 * node + 3]));

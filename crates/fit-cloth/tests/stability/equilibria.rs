@@ -198,7 +198,7 @@ fn jumps(row: &mut Row, model: Model, (planar, way): (bool, Vector3<f64>), stret
     for node in sample.held.iter().filter(|held| held.clip == Some(1)).map(|held| held.node) {
         (0..3).for_each(|i| target[3 * node + i] += SIDE * way[i]);
     }
-    let found = solver.drive(&sample.curves, &mut x, &target, &Settings::default());
+    let found = solver.load_steps(&sample.curves, &mut x, &target, &Settings::default());
     let there =
         sample.held.iter().all(|held| (0..3).all(|i| x[3 * held.node + i] == target[3 * held.node + i]));
     let also = if there { Ok(()) } else { Err(format!("not there; before: {before:?}")) };

@@ -4,7 +4,7 @@
 use crate::property::for_all;
 use crate::table::{Extent, Row};
 use cloth_fit::optimise::gauss_newton::{
-    Domain, Evaluation, Options, Residuals, Status as FitStatus, minimise,
+    Evaluation, LinearConstraints, Options, Residuals, Status as FitStatus, minimise,
 };
 use cloth_fit::optimise::least_squares::{Bound, LeastSquares, Smoothing, Solution, Status};
 use nalgebra::{DMatrix, DVector};
@@ -330,7 +330,7 @@ fn unsolvable_steps() -> Row {
     let mut row = Row::new(35, "a fit whose step cannot be solved: not converged, and why");
     for gap in [1e-6, 1e-3, 1.0] {
         let rows = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, -1.0, -1.0]);
-        let domain = Domain { rows, bounds: DVector::from_vec(vec![gap, 0.0]), roughness: None };
+        let domain = LinearConstraints { rows, bounds: DVector::from_vec(vec![gap, 0.0]), roughness: None };
         let start = DVector::from_vec(vec![0.0, 0.0]);
         let Ok(outcome) = minimise(&mut Line, &start, &domain, &Options::default(), &mut |_| ());
         let said = matches!(outcome.status, FitStatus::StepFailed { .. }) && !outcome.status.converged();

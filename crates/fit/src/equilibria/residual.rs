@@ -1,6 +1,6 @@
 //! The residuals of a stage, in units of independent noise, and their derivatives.
 
-use super::simulation::Simulation;
+use super::frames::Equilibria;
 use super::state::FrameResult;
 use crate::optimise::gauss_newton::{Evaluation, Residuals};
 use crate::optimise::robust::Robust;
@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 
-impl Simulation<'_> {
+impl Equilibria<'_> {
     /// Indices of consecutive residuals: one force component of one clip through a sequence, or one coordinate of one
     /// node.
     pub fn tracks(&self) -> Vec<Vec<usize>> {
@@ -100,7 +100,7 @@ impl Simulation<'_> {
     }
 }
 
-impl Residuals for Simulation<'_> {
+impl Residuals for Equilibria<'_> {
     type Error = Infallible;
 
     fn robust(&self) -> Option<Robust> {

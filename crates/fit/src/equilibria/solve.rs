@@ -1,7 +1,7 @@
 //! The equilibrium of one frame: start, fallbacks, and sensitivities from the factorisation.
 
+use super::frames::{Equilibria, SolverPool};
 use super::observation::{Balance, Objective, Observation};
-use super::simulation::{Simulation, SolverPool};
 use super::state::{FrameResult, State, measured_shape};
 use super::task::SolveStart;
 use super::whitening::Whitening;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Two equilibria of a frame are the same if no node differs by more than this share of a cell.
 const SAME_SHAPE: f64 = 0.01;
 
-impl<'a> Simulation<'a> {
+impl<'a> Equilibria<'a> {
     /// Equilibria of all frames. `change`, of the control values since the states were found, extrapolates the states
     /// first.
     ///
@@ -79,7 +79,7 @@ impl<'a> Simulation<'a> {
             // Then in load steps, from the flat sheet.
             self.meter.takes_load_steps();
             x.copy_from_slice(&rest);
-            found = solver.drive(curves, &mut x, &frame.start, settings);
+            found = solver.load_steps(curves, &mut x, &frame.start, settings);
             self.meter.add(&found);
             escaped = found.escaped;
         }
@@ -167,7 +167,7 @@ impl<'a> Simulation<'a> {
             let mut measured = self.states[place].clone();
             let seen = solver.solve(curves, &mut measured.x, settings);
             measured.escaped |= seen.escaped;
-            let along = solver.drive(curves, &mut x, &replica.frames[frame].start, settings);
+            let along = solver.load_steps(curves, &mut x, &replica.frames[frame].start, settings);
             [seen, along].iter().for_each(|found| self.meter.add(found));
             if !along.converged() {
                 self.meter.does_not_follow();

@@ -14,7 +14,7 @@ pub(super) struct State {
     pub(super) sensitivity: Vec<f64>,
     /// The solve met an unstable equilibrium and left it: others may exist.
     pub(super) escaped: bool,
-    /// Weighs errors of held positions. Renewed by [`Simulation::set_curve`] and constant in between, so that the
+    /// Weighs errors of held positions. Renewed by [`Equilibria::set_unknowns`] and constant in between, so that the
     /// objective stays one function.
     pub(super) whitening: Option<Arc<Whitening>>,
 }

@@ -1,6 +1,6 @@
 //! Predicts tests from known curves.
 
-use crate::equilibria::{Counters, DroppedFrame, Objective, Simulation, SolveStart, Task, Unknowns};
+use crate::equilibria::{Counters, DroppedFrame, Equilibria, Objective, SolveStart, Task, Unknowns};
 use crate::stage::interventions::Interventions;
 use crate::stage::report::SequenceReport;
 use crate::stage::sequence_reports;
@@ -75,7 +75,7 @@ pub fn predict(
         robust: None,
     };
     let mut simulation =
-        Simulation::unsettled(&replicas, task, Unknowns::default(), Arc::clone(&watch.meter));
+        Equilibria::unsettled(&replicas, task, Unknowns::default(), Arc::clone(&watch.meter));
     simulation.follow();
     let forces = simulation.settle();
     let counters = watch.meter.read().since(&spent_before);

@@ -11,7 +11,7 @@
 //! certify 98 % of the curves that rise. A curve that passes the check is returned unchanged.
 
 use crate::optimise::least_squares::LeastSquares;
-use cloth_sim::curve::soundness::{Context, Finding, Kind, LEAST_TANGENT, TANGENT_RATIO, check, extremes};
+use cloth_sim::curve::soundness::{Context, Finding, Flaw, LEAST_TANGENT, TANGENT_RATIO, check, extremes};
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
@@ -88,7 +88,7 @@ impl std::error::Error for Unrepairable {}
 /// A curve that cannot be repaired.
 pub fn repair(curve: &StiffnessCurve, context: &Context) -> Result<Repair, Unrepairable> {
     let found = check(curve, context);
-    if let Some(&finding) = found.iter().find(|finding| finding.kind == Kind::Magnitude) {
+    if let Some(&finding) = found.iter().find(|finding| finding.kind == Flaw::Magnitude) {
         return Err(Unrepairable::Magnitude(finding));
     }
     let problem = Problem::new(curve);
@@ -97,7 +97,7 @@ pub fn repair(curve: &StiffnessCurve, context: &Context) -> Result<Repair, Unrep
     }
     let given = curve.stiffnesses().iter().fold(0.0, |largest: f64, k| largest.max(k.abs()));
     let mut scale = extremes(curve).largest_stiffness.max(VANISHED * given);
-    let mut ratio = found.iter().any(|finding| finding.kind == Kind::TangentRatio);
+    let mut ratio = found.iter().any(|finding| finding.kind == Flaw::TangentRatio);
     let mut nearest = curve.clone();
     for _ in 0..ROUNDS {
         nearest = problem.nearest(LEAST_TANGENT * (1.0 + MARGIN) * scale, ratio)?;
@@ -105,7 +105,7 @@ pub fn repair(curve: &StiffnessCurve, context: &Context) -> Result<Repair, Unrep
         if !(largest > VANISHED * given) {
             return Err(Unrepairable::NoStiffness);
         }
-        let too_steep = check(&nearest, context).iter().any(|finding| finding.kind == Kind::TangentRatio);
+        let too_steep = check(&nearest, context).iter().any(|finding| finding.kind == Flaw::TangentRatio);
         if (largest / scale - 1.0).abs() <= 0.5 * MARGIN && (ratio || !too_steep) {
             break;
         }

@@ -8,7 +8,7 @@ mod entry;
 pub use control_point::{ControlPoint, Unit};
 pub use entry::{Correlation, CurveEntry, ResidualEntry};
 
-use crate::incremental::{Failure, FitReport};
+use crate::incremental::{FailedStage, FitReport};
 use crate::stage::report::Basis;
 use crate::stage::{Constraints, Settings, Variant};
 use cloth_data::error::{Error, Result};
@@ -118,7 +118,7 @@ impl MaterialFile {
                 .iter()
                 .map(|(stage, sequence)| ResidualEntry::new(sequence, &stage.dropped))
                 .collect(),
-            failures: report.failures.iter().map(Failure::in_words).collect(),
+            failures: report.failures.iter().map(FailedStage::in_words).collect(),
             notices: report.notices.clone(),
             provenance: Provenance {
                 program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")).into(),

@@ -19,7 +19,7 @@ mod state;
 
 pub use options::{Globalisation, Options};
 pub use outcome::{Iteration, Outcome, Status};
-pub use problem::{Domain, Evaluation, Residuals};
+pub use problem::{Evaluation, LinearConstraints, Residuals};
 
 use crate::optimise::least_squares::{LeastSquares, Status as StepStatus};
 use nalgebra::{DMatrix, DVector};
@@ -44,7 +44,7 @@ const NOISE: f64 = 1e-8;
 pub fn minimise<P: Residuals>(
     problem: &mut P,
     start: &DVector<f64>,
-    domain: &Domain,
+    domain: &LinearConstraints,
     options: &Options,
     observe: &mut dyn FnMut(&Iteration),
 ) -> Result<Outcome, P::Error> {
@@ -69,7 +69,7 @@ pub fn minimise<P: Residuals>(
 fn within_region<P: Residuals>(
     problem: &mut P,
     mut state: State,
-    domain: &Domain,
+    domain: &LinearConstraints,
     options: &Options,
     observe: &mut dyn FnMut(&Iteration),
 ) -> Result<Outcome, P::Error> {
@@ -159,7 +159,7 @@ fn within_region<P: Residuals>(
 }
 
 /// The start itself, or the nearest point that satisfies the inequalities.
-fn inside(start: &DVector<f64>, domain: &Domain) -> Result<DVector<f64>, StepStatus> {
+fn inside(start: &DVector<f64>, domain: &LinearConstraints) -> Result<DVector<f64>, StepStatus> {
     let n = start.len();
     let slack = &domain.rows * start - &domain.bounds;
     if slack.iter().all(|&slack| slack >= 0.0) {

@@ -9,7 +9,7 @@ use super::settings::Settings;
 use super::start::{Start, start};
 use super::summary::{curve_report, sequence_reports};
 use super::watch::Watch;
-use crate::equilibria::{Objective, Simulation, Task, Unknowns};
+use crate::equilibria::{Equilibria, Objective, Task, Unknowns};
 use crate::optimise::gauss_newton::Outcome;
 use crate::optimise::uncertainty::{Covariance, Scatter};
 use crate::twin::replica::Replica;
@@ -142,7 +142,7 @@ fn simulate<'r>(
     unknowns: Unknowns,
     settings: &Settings,
     watch: &Watch<'_>,
-) -> Result<Simulation<'r>> {
+) -> Result<Equilibria<'r>> {
     let task = Task {
         objective: plan.objective,
         known,
@@ -150,7 +150,7 @@ fn simulate<'r>(
         start: settings.solve_start,
         robust: None,
     };
-    let simulation = Simulation::new(replicas, task, unknowns, Arc::clone(&watch.meter));
+    let simulation = Equilibria::new(replicas, task, unknowns, Arc::clone(&watch.meter));
     if simulation.settled().next().is_none() {
         let status = simulation.dropped().first().map_or(String::new(), |dropped| dropped.status.to_string());
         return Err(unfit(
@@ -181,7 +181,7 @@ struct Judgement {
 /// * `complete` — no frame was lost on the way, so that the fit's Jacobian and the simulation have the same rows
 fn judge(
     plan: &Plan,
-    simulation: &Simulation<'_>,
+    simulation: &Equilibria<'_>,
     growth: &Growth,
     curve: &StiffnessCurve,
     tracks: &[Vec<usize>],

@@ -11,7 +11,7 @@
 //! Source: virtual fields and equilibrium gap, Grédiac et al. 2006; Claire et al. 2004.
 
 use crate::equilibria::{parameter_columns, without_rounding};
-use crate::optimise::gauss_newton::Domain;
+use crate::optimise::gauss_newton::LinearConstraints;
 use crate::optimise::least_squares::{LeastSquares, Smoothing};
 use crate::twin::replica::Replica;
 use cloth_sim::curve::StiffnessCurve;
@@ -25,7 +25,7 @@ pub fn start(
     replicas: &[Replica],
     fitted: &[Component],
     curve: &StiffnessCurve,
-    domain: &Domain,
+    domain: &LinearConstraints,
 ) -> DVector<f64> {
     let points = curve.len();
     let mut curves = Curves::default();

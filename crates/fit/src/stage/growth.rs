@@ -9,8 +9,8 @@ use super::growth_rule::SIGNIFICANT;
 use super::level::Level;
 use super::settings::{Constraints, Settings};
 use super::watch::{Event, Watch};
-use crate::equilibria::{Objective, Simulation, Unknown, Unknowns};
-use crate::optimise::gauss_newton::{Domain, Iteration, Outcome, minimise};
+use crate::equilibria::{Equilibria, Objective, Unknown, Unknowns};
+use crate::optimise::gauss_newton::{Iteration, LinearConstraints, Outcome, minimise};
 use crate::optimise::uncertainty::{Covariance, variance_left};
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use cloth_sim::error::Result;
@@ -32,7 +32,7 @@ pub struct Growth {
     /// The fit with its control points.
     pub outcome: Outcome,
     /// Constraints on the curve.
-    pub domain: Domain,
+    pub domain: LinearConstraints,
     /// Every level, including those that did not pay and were not kept.
     pub levels: Vec<Level>,
     /// Reason for the end of the growth.
@@ -50,7 +50,7 @@ const FELT: f64 = 0.1;
 /// # Errors
 /// Control points that do not form a valid curve.
 pub fn grow(
-    simulation: &mut Simulation<'_>,
+    simulation: &mut Equilibria<'_>,
     settings: &Settings,
     lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
@@ -65,7 +65,7 @@ pub fn grow(
     let curves = simulation.unknowns().iter().count().max(1);
     let most = settings.most_points().min(carriers.saturating_sub(spare) / curves).max(1);
     let mut levels = Vec::new();
-    let mut kept: Option<(Unknowns, Outcome, Domain)> = None;
+    let mut kept: Option<(Unknowns, Outcome, LinearConstraints)> = None;
     let rule = settings.growth;
     let mut unknowns = simulation.unknowns().clone();
     let mut tries = 0;
@@ -135,7 +135,7 @@ pub fn grow(
 /// # Errors
 /// Control points that do not form a valid curve.
 pub fn refit(
-    simulation: &mut Simulation<'_>,
+    simulation: &mut Equilibria<'_>,
     settings: &Settings,
     lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
@@ -153,13 +153,13 @@ pub fn refit(
 ///
 /// * `whitenings` — maximum number of renewed whitenings
 fn fit_level(
-    simulation: &mut Simulation<'_>,
+    simulation: &mut Equilibria<'_>,
     unknowns: &Unknowns,
     whitenings: usize,
     settings: &Settings,
     lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
-) -> Result<(Outcome, Domain, Level)> {
+) -> Result<(Outcome, LinearConstraints, Level)> {
     let clock = Instant::now();
     let spent_before = watch.meter.read();
     let points = points_of(unknowns);
@@ -173,7 +173,7 @@ fn fit_level(
     }
     let domains = unknowns.iter().zip(lowest_tangents);
     let domains = domains.map(|(unknown, &lowest)| domain(&unknown.curve, settings.constraints, lowest));
-    let domain = Domain::together(&domains.collect::<Result<Vec<_>>>()?);
+    let domain = LinearConstraints::together(&domains.collect::<Result<Vec<_>>>()?);
     let mut observe = |iteration: &Iteration| {
         let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
         let factorisations = watch.meter.read().since(&spent_before).factorisations;
@@ -181,7 +181,7 @@ fn fit_level(
         (watch.observe)(Event::Iteration { iteration, rms, factorisations, seconds });
     };
     let (mut iterations, mut projected): (Vec<Iteration>, usize) = (Vec::new(), 0);
-    let mut fit_from = |simulation: &mut Simulation<'_>, start: &DVector<f64>| {
+    let mut fit_from = |simulation: &mut Equilibria<'_>, start: &DVector<f64>| {
         let done = iterations.len();
         let mut numbered = |step: &Iteration| {
             let step = Iteration { iteration: done + step.iteration, ..step.clone() };
@@ -225,7 +225,7 @@ fn points_of(unknowns: &Unknowns) -> usize {
 }
 
 /// The same curves through other, equidistant control points, over all that is visited.
-fn resampled(simulation: &Simulation<'_>, unknowns: &Unknowns, points: usize) -> Result<Unknowns> {
+fn resampled(simulation: &Equilibria<'_>, unknowns: &Unknowns, points: usize) -> Result<Unknowns> {
     let resampled = |unknown: &Unknown| {
         let curve = unknown.curve.resampled(points, simulation.reach(unknown))?;
         Ok(Unknown { curve, ..unknown.clone() })
@@ -242,7 +242,7 @@ fn next_points(points: usize, most: usize) -> usize {
 ///
 /// # Errors
 /// Strains that no curve can have.
-pub fn domain(curve: &StiffnessCurve, constraints: Constraints, lowest: f64) -> Result<Domain> {
+pub fn domain(curve: &StiffnessCurve, constraints: Constraints, lowest: f64) -> Result<LinearConstraints> {
     let points = curve.len();
     let (rows, lowest) = match constraints {
         Constraints::Stable => (stability_rows(curve.strains())?, lowest),
@@ -258,5 +258,5 @@ pub fn domain(curve: &StiffnessCurve, constraints: Constraints, lowest: f64) -> 
         2 => Some(DMatrix::from_row_slice(1, 2, &[1.0, -1.0])),
         _ => Some(DMatrix::from_fn(points - 2, points, second_difference)),
     };
-    Ok(Domain { bounds: DVector::from_element(rows.nrows(), lowest), rows, roughness })
+    Ok(LinearConstraints { bounds: DVector::from_element(rows.nrows(), lowest), rows, roughness })
 }

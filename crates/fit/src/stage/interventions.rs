@@ -5,7 +5,7 @@
 //! curves separately.
 
 use super::level::Level;
-use crate::equilibria::{Counters, Simulation};
+use crate::equilibria::{Counters, Equilibria};
 use crate::optimise::gauss_newton::Outcome;
 use cloth_sim::equilibrium::Remedies;
 use cloth_sim::material::Component;
@@ -92,7 +92,7 @@ fn is_zero(count: &usize) -> bool {
 
 impl Interventions {
     /// The interventions of solves, and of the shapes that a simulation reached.
-    pub fn new(counters: &Counters, simulation: &Simulation<'_>) -> Self {
+    pub fn new(counters: &Counters, simulation: &Equilibria<'_>) -> Self {
         Self {
             equilibria_decided_by_rounding: counters.by_rounding,
             solves_begun_anew: counters.begun_anew,
@@ -107,7 +107,7 @@ impl Interventions {
     /// Adds the interventions of a fit.
     ///
     /// * `outcome` — final outcome, with residuals as weighted
-    pub fn with_fit(self, levels: &[Level], simulation: &Simulation<'_>, outcome: &Outcome) -> Self {
+    pub fn with_fit(self, levels: &[Level], simulation: &Equilibria<'_>, outcome: &Outcome) -> Self {
         let steps = || levels.iter().flat_map(|level| &level.iterations);
         let bent = simulation.task().robust.map_or(f64::INFINITY, |robust| robust.bend(robust.limit).0);
         Self {

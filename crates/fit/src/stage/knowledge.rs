@@ -69,7 +69,7 @@ impl Knowledge {
     }
 
     /// The components of every uncertain curve of which some take part, one group each: the columns of a
-    /// [`sensitivity`](crate::equilibria::Simulation::sensitivity_to) to them.
+    /// [`sensitivity`](crate::equilibria::Equilibria::sensitivity_to) to them.
     pub fn groups(&self, parts: &[Component]) -> Vec<Vec<Component>> {
         let taking_part = |block: &&Block| block.components.iter().any(|c| parts.contains(c));
         self.blocks.iter().filter(taking_part).map(|block| block.components.clone()).collect()

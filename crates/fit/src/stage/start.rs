@@ -6,7 +6,7 @@ use super::knowledge::Knowledge;
 use super::plan::{Plan, mechanics, unfit};
 use super::settings::{Constraints, Settings};
 use crate::equilibria::Objective;
-use crate::optimise::gauss_newton::Domain;
+use crate::optimise::gauss_newton::LinearConstraints;
 use crate::twin::replica::Replica;
 use cloth_data::error::Result;
 use cloth_sim::curve::{StiffnessCurve, equidistant};
@@ -139,7 +139,7 @@ fn from_forces(plan: &Plan, replicas: &[Replica], settings: &Settings) -> Result
     }
     let negative = settings.model.negative_strain(plan.fitted[0], settings.compression);
     let one = StiffnessCurve::constant(1.0, negative).map_err(mechanics(plan))?;
-    let mean = gap::start(replicas, &plan.fitted, &one, &Domain::everywhere(1))[0];
+    let mean = gap::start(replicas, &plan.fitted, &one, &LinearConstraints::everywhere(1))[0];
     if !(mean > 0.0) {
         return Err(unfit(
             replicas,

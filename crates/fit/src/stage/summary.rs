@@ -3,7 +3,7 @@
 use super::growth::Growth;
 use super::report::{CurveReport, ForceRow, Histogram, Hysteresis, Sample, SequenceReport};
 use super::shapes::Shapes;
-use crate::equilibria::{Settled, Simulation, Unknown};
+use crate::equilibria::{Equilibria, Settled, Unknown};
 use crate::optimise::uncertainty::Covariance;
 use cloth_data::frame::Phase;
 use cloth_sim::bending::Rolled;
@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The curve with its bands, over the strains of the simulation's equilibria.
 pub(crate) fn curve_report(
-    simulation: &Simulation<'_>,
+    simulation: &Equilibria<'_>,
     unknown: Unknown,
     growth: Growth,
     covariance: &Covariance,
@@ -51,7 +51,7 @@ pub(crate) fn curve_report(
 }
 
 /// Relation of the fitted bending elements to a rolled sheet; `None` for stretch and shear.
-fn rolled(simulation: &Simulation<'_>, unknown: &Unknown) -> Option<Rolled> {
+fn rolled(simulation: &Equilibria<'_>, unknown: &Unknown) -> Option<Rolled> {
     let component = *unknown.components.first()?;
     simulation.settled().find_map(|s| s.replica.cloth(s.frame).bending()?.rolled(component))
 }
@@ -126,7 +126,7 @@ impl Rows<'_> {
 /// The reports of all sequences.
 ///
 /// * `forces` — simulated forces along the measured components of every frame, N
-pub(crate) fn sequence_reports(simulation: &Simulation<'_>, forces: &[Vec<f64>]) -> Vec<SequenceReport> {
+pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>]) -> Vec<SequenceReport> {
     let mut reports: Vec<SequenceReport> = Vec::new();
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut positions: Vec<(f64, usize)> = Vec::new();

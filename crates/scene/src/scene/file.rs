@@ -22,7 +22,7 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) components: Option<Vec<Component>>,
     #[serde(default)]
-    pub(super) measure: Option<Measure>,
+    pub(super) measure: Option<ShapeMeasure>,
     pub(super) sheet: SheetFile,
     #[serde(default)]
     pub(super) held: Vec<HoldFile>,
@@ -47,7 +47,7 @@ fn frames() -> f64 {
 /// Measurement of a scene's final shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Measure {
+pub enum ShapeMeasure {
     /// Depth of the sheet below its holds.
     Droop,
     /// Drape coefficient: share of the overhang's area that its shadow covers.

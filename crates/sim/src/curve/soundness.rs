@@ -41,7 +41,7 @@ pub struct Context {
 
 /// Kinds of findings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum Flaw {
     /// k < 0.
     NegativeStiffness,
     /// σ′ < κ.
@@ -56,7 +56,7 @@ pub enum Kind {
     Unvisited,
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::NegativeStiffness => "negative-stiffness",
@@ -90,8 +90,8 @@ impl fmt::Display for Severity {
 /// A defect of a curve, or a note on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// Kind of finding.
-    pub kind: Kind,
+    /// Flaw of finding.
+    pub kind: Flaw,
     /// Strain interval, in the curve's own strain; an infinite end extends without limit.
     pub strains: [f64; 2],
     /// Worst value in the interval: stiffness, tangent or ratio; for unvisited strains, their share of the range.
@@ -105,13 +105,13 @@ impl Finding {
     pub fn severity(&self) -> Severity {
         match self.kind {
             // No energy minimum, or jumping equilibria: neither solver nor time step can fix that.
-            Kind::NegativeStiffness | Kind::LowTangent | Kind::EndSlope => Severity::Defect,
+            Flaw::NegativeStiffness | Flaw::LowTangent | Flaw::EndSlope => Severity::Defect,
             // Stable, but the stiffest strain dictates the time step.
-            Kind::TangentRatio => Severity::Defect,
+            Flaw::TangentRatio => Severity::Defect,
             // Stable too, but a factor of a thousand indicates a wrong unit; the result would be a different cloth.
-            Kind::Magnitude => Severity::Defect,
+            Flaw::Magnitude => Severity::Defect,
             // Every curve is extrapolated somewhere; solvers cope with that.
-            Kind::Unvisited => Severity::Note,
+            Flaw::Unvisited => Severity::Note,
         }
     }
 
@@ -122,36 +122,36 @@ impl Finding {
 
     /// True if the curve's shape, whatever its unit, can make a simulation fail.
     pub fn is_unstable(&self) -> bool {
-        self.is_defect() && self.kind != Kind::Magnitude
+        self.is_defect() && self.kind != Flaw::Magnitude
     }
 
     /// Consequence in a simulation.
     pub fn consequence(&self) -> &'static str {
         match self.kind {
-            Kind::NegativeStiffness => {
+            Flaw::NegativeStiffness => {
                 "the stress has the wrong sign: strain drives itself further, and the cloth tears itself apart"
             }
-            Kind::LowTangent if self.value < 0.0 => {
+            Flaw::LowTangent if self.value < 0.0 => {
                 "stress falls as strain grows: neighbours share a load unevenly, and strain jumps to the end of the interval"
             }
-            Kind::LowTangent => {
+            Flaw::LowTangent => {
                 "stress hardly grows: strain drifts through the interval and solves converge slowly"
             }
-            Kind::TangentRatio => {
+            Flaw::TangentRatio => {
                 "the stiffest strain dictates the time step, and matrices are ill-conditioned when both ends are visited"
             }
-            Kind::EndSlope if self.value < 0.0 => {
+            Flaw::EndSlope if self.value < 0.0 => {
                 "beyond the last control point stress falls for ever: cloth strained that far cannot recover"
             }
-            Kind::EndSlope => "beyond the last control point hardly anything resists further strain",
-            Kind::Magnitude if self.value == 0.0 => "it has no stiffness at all: nothing resists this strain",
-            Kind::Magnitude if self.value < self.limit => {
+            Flaw::EndSlope => "beyond the last control point hardly anything resists further strain",
+            Flaw::Magnitude if self.value == 0.0 => "it has no stiffness at all: nothing resists this strain",
+            Flaw::Magnitude if self.value < self.limit => {
                 "far too soft for a cloth, probably another unit: it folds without resistance or stretches without end"
             }
-            Kind::Magnitude => {
+            Flaw::Magnitude => {
                 "far too stiff for a cloth, probably another unit (pascals?): stable time steps become tiny"
             }
-            Kind::Unvisited => "no measurement covers these strains: the curve is a guess",
+            Flaw::Unvisited => "no measurement covers these strains: the curve is a guess",
         }
     }
 }
@@ -161,12 +161,12 @@ impl fmt::Display for Finding {
         let [low, high] = self.strains;
         match high {
             // Applies to the curve as a whole.
-            _ if self.kind == Kind::Magnitude => write!(f, "{}", self.kind)?,
+            _ if self.kind == Flaw::Magnitude => write!(f, "{}", self.kind)?,
             f64::INFINITY => write!(f, "{} from {low:.4} on", self.kind)?,
             _ => write!(f, "{} from {low:.4} to {high:.4}", self.kind)?,
         }
         match self.kind {
-            Kind::Unvisited => Ok(()),
+            Flaw::Unvisited => Ok(()),
             _ => write!(f, " ({:.3e}, limit {:.3e})", self.value, self.limit),
         }
     }
@@ -203,12 +203,12 @@ pub fn check(curve: &StiffnessCurve, context: &Context) -> Vec<Finding> {
     // A curve that is nowhere positive has no scale.
     let least_allowed = LEAST_TANGENT * largest_stiffness.max(0.0);
     let low = least_allowed * (1.0 - ROUNDING);
-    let mut findings = intervals(curve, Kind::NegativeStiffness, 0.0, 0.0);
-    findings.extend(intervals(curve, Kind::LowTangent, low, least_allowed));
+    let mut findings = intervals(curve, Flaw::NegativeStiffness, 0.0, 0.0);
+    findings.extend(intervals(curve, Flaw::LowTangent, low, least_allowed));
     if least_tangent > 0.0 && largest_tangent > TANGENT_RATIO * (1.0 + ROUNDING) * least_tangent {
         let value = largest_tangent / least_tangent;
         findings.push(Finding {
-            kind: Kind::TangentRatio,
+            kind: Flaw::TangentRatio,
             strains: [0.0, last],
             value,
             limit: TANGENT_RATIO,
@@ -217,7 +217,7 @@ pub fn check(curve: &StiffnessCurve, context: &Context) -> Vec<Finding> {
     let end = curve.response(last).tangent;
     if end < low {
         let strains = [last, f64::INFINITY];
-        findings.push(Finding { kind: Kind::EndSlope, strains, value: end, limit: least_allowed });
+        findings.push(Finding { kind: Flaw::EndSlope, strains, value: end, limit: least_allowed });
     }
     findings.extend(magnitude(largest_stiffness, last, context.magnitude));
     findings.extend(unvisited(last, context.visited));
@@ -225,8 +225,8 @@ pub fn check(curve: &StiffnessCurve, context: &Context) -> Vec<Finding> {
 }
 
 /// Intervals where stiffness or tangent is below a limit.
-fn intervals(curve: &StiffnessCurve, kind: Kind, below: f64, limit: f64) -> Vec<Finding> {
-    let of = |piece: &Piece| if kind == Kind::NegativeStiffness { piece.stiffness } else { piece.tangent };
+fn intervals(curve: &StiffnessCurve, kind: Flaw, below: f64, limit: f64) -> Vec<Finding> {
+    let of = |piece: &Piece| if kind == Flaw::NegativeStiffness { piece.stiffness } else { piece.tangent };
     let mut found = Vec::new();
     let mut worst = Vec::new();
     for piece in pieces(curve) {
@@ -258,7 +258,7 @@ fn magnitude(largest: f64, last: f64, plausible: Option<[f64; 2]>) -> Option<Fin
         largest if largest > high => high,
         _ => return None,
     };
-    Some(Finding { kind: Kind::Magnitude, strains: [0.0, last], value: largest, limit })
+    Some(Finding { kind: Flaw::Magnitude, strains: [0.0, last], value: largest, limit })
 }
 
 fn unvisited(last: f64, visited: Option<[f64; 2]>) -> Vec<Finding> {
@@ -266,7 +266,7 @@ fn unvisited(last: f64, visited: Option<[f64; 2]>) -> Vec<Finding> {
     let gaps = [[0.0, low.min(last)], [high.max(0.0), last]];
     let gap = |[from, to]: [f64; 2]| {
         let finding =
-            Finding { kind: Kind::Unvisited, strains: [from, to], value: (to - from) / last, limit: 0.0 };
+            Finding { kind: Flaw::Unvisited, strains: [from, to], value: (to - from) / last, limit: 0.0 };
         (to - from > NEARLY_ALL * last).then_some(finding)
     };
     gaps.into_iter().filter_map(gap).collect()

@@ -11,7 +11,7 @@ use super::settings::{LinearSolver, Newton, Settings};
 use super::state::State;
 use super::step::{Status, Step};
 use crate::cloth::Cloth;
-use crate::element::Curvature;
+use crate::element::HessianKind;
 use crate::equilibrium::{self, Solver, Tolerance};
 use crate::increment::Increment;
 use crate::linear::Linear;
@@ -107,7 +107,7 @@ impl<'a> ImplicitEuler<'a> {
             increment.push[unknown] = mass * state.velocities[coordinate] / h;
         }
         if beta > 0.0 {
-            cloth.hessian(curves, &state.positions, Curvature::Material, &mut self.values);
+            cloth.hessian(curves, &state.positions, HessianKind::Material, &mut self.values);
             increment.matrix.extend(self.values[..cloth.entries()].iter().map(|value| value * beta / h));
         }
         if let (Some(wind), Some(air)) = (settings.wind, air) {

@@ -7,7 +7,7 @@ use super::state::State;
 use super::step::{Status, Step};
 use crate::cloth::{Cloth, ForceScale};
 use crate::curve::{NegativeStrain, StiffnessCurve};
-use crate::element::Curvature;
+use crate::element::HessianKind;
 use crate::equilibrium::Remedies;
 use crate::material::Curves;
 use crate::sequence::irregular;
@@ -118,7 +118,7 @@ impl RungeKutta {
             let v = |unknown: usize| velocities[cloth.unknown_coordinates()[unknown]];
             self.product.fill(0.0);
             if beta > 0.0 {
-                cloth.hessian(curves, positions, Curvature::Material, &mut self.values);
+                cloth.hessian(curves, positions, HessianKind::Material, &mut self.values);
                 self.free.iter_mut().enumerate().for_each(|(unknown, free)| *free = v(unknown));
                 cloth.pattern().multiply(&self.values[..cloth.entries()], &self.free, &mut self.product);
             }
@@ -181,7 +181,7 @@ fn stiffest(curves: &Curves) -> Curves {
 /// Greatest ω, 1/s, by the power method.
 fn greatest_frequency(cloth: &Cloth, curves: &Curves, positions: &[f64]) -> f64 {
     let mut values = Vec::new();
-    cloth.hessian(curves, positions, Curvature::Full, &mut values);
+    cloth.hessian(curves, positions, HessianKind::Full, &mut values);
     let masses = cloth.unknown_masses();
     let mut mode: Vec<f64> = (0..cloth.unknowns()).map(irregular).collect();
     cloth.project(&mut mode);

@@ -6,7 +6,7 @@ use super::newton::DAMPING;
 use super::outcome::Status;
 use super::settings::Settings;
 use super::solver::Solver;
-use crate::element::Curvature;
+use crate::element::HessianKind;
 use crate::material::Curves;
 
 impl Solver<'_> {
@@ -26,7 +26,7 @@ impl Solver<'_> {
             if self.is_balanced(x, settings) {
                 return Status::Converged;
             }
-            self.assemble(curves, x, Curvature::Full);
+            self.assemble(curves, x, HessianKind::Full);
             let mean = self.mean_diagonal();
             let mut damping = shift.unwrap_or(DAMPING * mean);
             let norm = self.cloth.norm(&self.gradient);
@@ -58,7 +58,7 @@ impl Solver<'_> {
     /// definite.
     pub(super) fn factorise_damped(&mut self, curves: &Curves, x: &[f64]) {
         let last = self.shift;
-        self.assemble(curves, x, Curvature::Full);
+        self.assemble(curves, x, HessianKind::Full);
         let least = if last > 0.0 { last } else { DAMPING * self.mean_diagonal() };
         let _ = (0..16).any(|power| self.factorise(least * 10f64.powi(power)));
     }

@@ -7,7 +7,7 @@
 use super::outcome::Status;
 use super::settings::Settings;
 use super::solver::{Solver, shifts};
-use crate::element::Curvature;
+use crate::element::HessianKind;
 use crate::material::Curves;
 
 /// A full step may raise the energy by this many times |g·d|: the mixed matrix overshoots stretch on purpose, and the
@@ -101,7 +101,7 @@ impl Solver<'_> {
                 return Some(slope);
             }
         }
-        self.assemble(curves, x, Curvature::Clamped);
+        self.assemble(curves, x, HessianKind::Clamped);
         self.remedies.clamped += 1;
         // A clamped matrix may still be singular, for example if nothing but bending holds a flat sheet.
         let shifts = shifts(self.mean_diagonal());

@@ -4,7 +4,7 @@ use super::outcome::{Equilibrium, Limit, Status};
 use super::remedies::Remedies;
 use super::settings::{Settings, Tolerance};
 use crate::cloth::{Cloth, ForceScale};
-use crate::element::Curvature;
+use crate::element::HessianKind;
 use crate::increment::Increment;
 use crate::linear::Linear;
 use crate::linear::cholesky::Factor;
@@ -171,7 +171,7 @@ impl<'a> Solver<'a> {
 
     /// Factorises the true Hessian. True if the state is stable: no stiffness is negative, or zero up to rounding.
     pub(super) fn factorise_true_hessian(&mut self, curves: &Curves, x: &[f64]) -> bool {
-        self.assemble(curves, x, Curvature::Full);
+        self.assemble(curves, x, HessianKind::Full);
         let stable = self.factorise(-SINGULAR * self.mean_diagonal());
         if !stable {
             self.factorise_shifted();
@@ -241,7 +241,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Assembles the Hessian, including the terms of a time step.
-    pub(super) fn assemble(&mut self, curves: &Curves, x: &[f64], curvature: Curvature<'_>) {
+    pub(super) fn assemble(&mut self, curves: &Curves, x: &[f64], curvature: HessianKind<'_>) {
         self.cloth.hessian(curves, x, curvature, &mut self.values);
         if let Some(increment) = &self.increment {
             increment.add_hessian(self.cloth, &mut self.values);
@@ -252,7 +252,7 @@ impl<'a> Solver<'a> {
     pub(super) fn assemble_mixed(&mut self, curves: &Curves, x: &[f64]) {
         let mixed = std::mem::take(&mut self.mixed);
         let curvature =
-            if mixed.is_empty() || self.careful { Curvature::Full } else { Curvature::Mixed(&mixed) };
+            if mixed.is_empty() || self.careful { HessianKind::Full } else { HessianKind::Mixed(&mixed) };
         self.assemble(curves, x, curvature);
         self.mixed = mixed;
     }

@@ -4,7 +4,7 @@ use super::outcome::{Equilibrium, Status};
 use super::remedies::Remedies;
 use super::settings::Settings;
 use super::solver::Solver;
-use crate::element::Curvature;
+use crate::element::HessianKind;
 use crate::material::Curves;
 
 /// Most time steps take two to ten iterations; one that exceeds this limit is restarted with the energy falling in
@@ -60,7 +60,7 @@ impl Solver<'_> {
     /// Source: Baraff and Witkin 1998, §4.
     pub(crate) fn linearised_step(&mut self, curves: &Curves, x: &mut [f64]) -> Option<Remedies> {
         self.evaluate(curves, x);
-        let clamped = [Curvature::Full, Curvature::Clamped].into_iter().position(|curvature| {
+        let clamped = [HessianKind::Full, HessianKind::Clamped].into_iter().position(|curvature| {
             self.assemble(curves, x, curvature);
             self.direction_of(0.0).is_some()
         })?;

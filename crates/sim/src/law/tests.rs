@@ -8,7 +8,9 @@
 
 use super::*;
 use crate::curve::{NegativeStrain, StiffnessCurve};
-use crate::element::{Curvature, EnergyPass, GradientPass, HessianPass, ParameterPass, Pass, lower_entries};
+use crate::element::{
+    EnergyPass, GradientPass, HessianKind, HessianPass, ParameterPass, Pass, lower_entries,
+};
 use crate::finite_difference::derivative_error;
 use crate::membrane::{StvkTriangle, Triangle};
 use crate::mesh::{Diagonals, Grid};
@@ -111,7 +113,7 @@ fn hessian(law: &impl Law, elements: &[StvkTriangle], x: &[f64]) -> Vec<f64> {
     let targets: Vec<u32> = (0..(entries.len() * elements.len()) as u32).collect();
     let mut values = vec![0.0; targets.len()];
     let targets = [&targets[..], &[][..]];
-    HessianPass { law, x, curvature: Curvature::Full, targets, values: &mut values }
+    HessianPass { law, x, kind: HessianKind::Full, targets, values: &mut values }
         .visit::<3, 3, 3, _>(0, elements);
     let mut hessian = vec![0.0; n * n];
     for (element, values) in elements.iter().zip(values.chunks(entries.len())) {

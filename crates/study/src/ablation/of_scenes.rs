@@ -4,7 +4,7 @@ use super::ablated::Ablated;
 use crate::extent::Extent;
 use crate::physical::Reference;
 use crate::progress::Progress;
-use crate::scene::{Balanced, IN_SPACE, Scene, WEIGHT};
+use crate::scene::{Balanced, IN_SPACE, TestScene, WEIGHT};
 use crate::solver::damped;
 use cloth_data::error::Result;
 use cloth_data::frame::Kind;
@@ -21,8 +21,8 @@ const REPEATS: usize = 3;
 struct Pair {
     part: &'static str,
     by_default: bool,
-    with: (Scene, equilibrium::Settings),
-    without: (Scene, equilibrium::Settings),
+    with: (TestScene, equilibrium::Settings),
+    without: (TestScene, equilibrium::Settings),
 }
 
 /// Ablation of scenes.
@@ -37,9 +37,9 @@ pub(crate) fn of_scenes(
     let reference = Reference { model: fabric.model, curves: fabric.curves()? };
     let nodes = extent.usual_nodes;
     let rig = || Rig { nodes: [extent.rig_nodes; 2], measured: [25, 25], frames: 6, ..Rig::default() };
-    let strip = Scene::new(fabric, Kind::StretchWeft, rig(), stretch::plan(&[Component::StretchWeft]))?;
-    let frame = Scene::new(fabric, Kind::Shear, rig(), shear::plan(2))?;
-    let sheet = Scene::new(fabric, Kind::BendWarp, rig(), bend::plan(&[Component::BendWarp], 1))?;
+    let strip = TestScene::new(fabric, Kind::StretchWeft, rig(), stretch::plan(&[Component::StretchWeft]))?;
+    let frame = TestScene::new(fabric, Kind::Shear, rig(), shear::plan(2))?;
+    let sheet = TestScene::new(fabric, Kind::BendWarp, rig(), bend::plan(&[Component::BendWarp], 1))?;
     let pairs = of_strip(&strip).into_iter().chain(of_frame(&frame)).chain(of_sheet(&sheet));
     pairs
         .map(|pair| {
@@ -49,19 +49,19 @@ pub(crate) fn of_scenes(
         .collect()
 }
 
-fn pair(part: &'static str, by_default: bool, with: Scene, without: Scene) -> Pair {
+fn pair(part: &'static str, by_default: bool, with: TestScene, without: TestScene) -> Pair {
     let settings = equilibrium::Settings::default();
     Pair { part, by_default, with: (with, settings), without: (without, settings) }
 }
 
 /// The same scene with more or other components.
-fn of(scene: &Scene, components: &[Component]) -> Scene {
+fn of(scene: &TestScene, components: &[Component]) -> TestScene {
     let plan = Plan { components: components.to_vec(), ..scene.plan.clone() };
-    Scene { plan, ..scene.clone() }
+    TestScene { plan, ..scene.clone() }
 }
 
 /// The strip of the stretch stage, which includes none of these parts by default.
-fn of_strip(strip: &Scene) -> Vec<Pair> {
+fn of_strip(strip: &TestScene) -> Vec<Pair> {
     let bends = [Component::BendWeft, Component::BendWarp, Component::BendDiagonal];
     let stretches = [Component::StretchWeft, Component::StretchWarp];
     let all_but_shear = [&stretches[..], &bends].concat();
@@ -76,8 +76,9 @@ fn of_strip(strip: &Scene) -> Vec<Pair> {
 }
 
 /// The picture frame of the second pass over shear.
-fn of_frame(frame: &Scene) -> Vec<Pair> {
-    let flat = Scene { plan: Plan { kinds: frame.plan.kinds.clone(), ..shear::plan(1) }, ..frame.clone() };
+fn of_frame(frame: &TestScene) -> Vec<Pair> {
+    let flat =
+        TestScene { plan: Plan { kinds: frame.plan.kinds.clone(), ..shear::plan(1) }, ..frame.clone() };
     let settings = equilibrium::Settings::default();
     let trusting = equilibrium::Settings { escape: false, ..settings };
     vec![
@@ -88,7 +89,7 @@ fn of_frame(frame: &Scene) -> Vec<Pair> {
 }
 
 /// The sheet pushed off a table, from the bending stages.
-fn of_sheet(sheet: &Scene) -> Vec<Pair> {
+fn of_sheet(sheet: &TestScene) -> Vec<Pair> {
     let without_shear: Vec<Component> =
         sheet.plan.components.iter().copied().filter(|component| *component != Component::Shear).collect();
     vec![
@@ -99,7 +100,7 @@ fn of_sheet(sheet: &Scene) -> Vec<Pair> {
 }
 
 /// The same scene with another solver.
-fn solved(part: &'static str, scene: &Scene, without: equilibrium::Settings) -> Pair {
+fn solved(part: &'static str, scene: &TestScene, without: equilibrium::Settings) -> Pair {
     let with = equilibrium::Settings::default();
     Pair { part, by_default: true, with: (scene.clone(), with), without: (scene.clone(), without) }
 }

@@ -1,10 +1,10 @@
 //! Reading a curve to edit and writing it back.
 
 use crate::failure::Failure;
+use crate::file_curve::{FileCurve, Source, read};
 use crate::options::Reading;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::subject::{Source, Subject, read};
 use crate::telling::{Telling, tell, warn};
 use cloth_data::curve_edit::largest_stress;
 use cloth_data::error::Error;
@@ -16,7 +16,7 @@ use std::io::Write;
 use std::path::Path;
 
 /// Reads the one curve to edit.
-pub(super) fn one(path: &Path, reading: &Reading) -> Result<(Source, Subject), Failure> {
+pub(super) fn one(path: &Path, reading: &Reading) -> Result<(Source, FileCurve), Failure> {
     let (source, mut subjects) = read(path, reading.component(), reading.model())?;
     match (subjects.pop(), subjects.is_empty()) {
         (Some(subject), true) => Ok((source, subject)),
@@ -31,7 +31,7 @@ pub(super) fn one(path: &Path, reading: &Reading) -> Result<(Source, Subject), F
 /// The text of a material file with one curve replaced.
 pub(super) fn in_material(
     mut file: MaterialFile,
-    subject: &Subject,
+    subject: &FileCurve,
     edited: &StiffnessCurve,
     change: &str,
 ) -> String {
@@ -42,7 +42,7 @@ pub(super) fn in_material(
 /// Writes an edited curve, prints its range before and after, and warns of its defects.
 pub(super) fn finish(
     [input, out]: [&Path; 2],
-    subject: &Subject,
+    subject: &FileCurve,
     (edited, text): (&StiffnessCurve, &str),
     telling: Telling,
     output: &mut impl Write,

@@ -2,9 +2,9 @@
 
 use super::edited::{finish, in_material, one};
 use crate::failure::Failure;
+use crate::file_curve::Source;
 use crate::options::Reading;
 use crate::outcome::Outcome;
-use crate::subject::Source;
 use crate::telling::Telling;
 use clap::Args;
 use cloth_data::curve_edit::{Extension, Trend, extended};

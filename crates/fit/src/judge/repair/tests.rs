@@ -48,7 +48,7 @@ fn the_ratio_of_tangents_is_kept_by_no_more_than_it_takes() {
     let given = curve(&[0.0, 0.1, 0.1 + 1e-6], &[1.0, 1.0, 1.1]);
     assert_eq!(
         check(&given, &Context::default()).first().map(|finding| finding.kind),
-        Some(Kind::TangentRatio)
+        Some(Flaw::TangentRatio)
     );
     let found = repair(&given, &Context::default()).unwrap();
     let of = extremes(&found.curve);

@@ -11,7 +11,7 @@
 
 use super::options::Options;
 use super::outcome::{Iteration, Outcome, Status};
-use super::problem::{Domain, Residuals, values};
+use super::problem::{LinearConstraints, Residuals, values};
 use super::region::{Scale, Step};
 use super::state::{State, accepted_state};
 use crate::optimise::least_squares::Status as StepStatus;
@@ -23,7 +23,7 @@ const SHORTEST: f64 = 1.0 / 1024.0;
 pub(super) fn descend<P: Residuals>(
     problem: &mut P,
     mut state: State,
-    domain: &Domain,
+    domain: &LinearConstraints,
     options: &Options,
     observe: &mut dyn FnMut(&Iteration),
 ) -> Result<Outcome, P::Error> {

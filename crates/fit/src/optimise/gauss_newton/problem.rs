@@ -45,7 +45,7 @@ pub enum Evaluation {
 
 /// The inequalities A k ≥ b, and the preference for directions that the data do not see.
 #[derive(Debug, Clone)]
-pub struct Domain {
+pub struct LinearConstraints {
     /// A.
     pub rows: DMatrix<f64>,
     /// b.
@@ -55,7 +55,7 @@ pub struct Domain {
     pub roughness: Option<DMatrix<f64>>,
 }
 
-impl Domain {
+impl LinearConstraints {
     /// All of n-space.
     pub fn everywhere(n: usize) -> Self {
         Self { rows: DMatrix::zeros(0, n), bounds: DVector::zeros(0), roughness: None }

@@ -5,7 +5,7 @@
 //! box would join the inequalities at no cost, but it lets unknowns that the data hardly see run to its corners for a
 //! negligible gain, and therefore fails on NIST's MGH17 from every radius tried.
 
-use super::problem::Domain;
+use super::problem::LinearConstraints;
 use super::state::State;
 use crate::optimise::least_squares::{Active, LeastSquares, Smoothing, Solution, Status, Triangle};
 use nalgebra::{DMatrix, DVector};
@@ -42,7 +42,7 @@ pub(super) struct Step {
 impl Step {
     pub(super) fn new(
         state: &State,
-        domain: &Domain,
+        domain: &LinearConstraints,
         scale: &Scale,
         radius: f64,
         bend: Option<&Bend>,

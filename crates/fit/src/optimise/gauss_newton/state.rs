@@ -1,6 +1,6 @@
 //! A point of the search with its residual, its Jacobian, and the linear model there.
 
-use super::problem::{Domain, Residuals, values};
+use super::problem::{LinearConstraints, Residuals, values};
 use crate::optimise::least_squares::{LeastSquares, Triangle};
 use crate::optimise::robust::Robust;
 use nalgebra::{DMatrix, DVector};
@@ -46,7 +46,7 @@ impl State {
     }
 
     /// The linear model of a step, with the inequalities.
-    pub(super) fn linear(&self, domain: &Domain) -> LeastSquares {
+    pub(super) fn linear(&self, domain: &LinearConstraints) -> LeastSquares {
         // At a point that rests on a row, the remainder of the row is the rounding of its terms: set to zero.
         let bounds = DVector::from_fn(domain.bounds.len(), |i, _| {
             let terms = (0..self.point.len()).map(|j| domain.rows[(i, j)] * self.point[j]);

@@ -1,6 +1,8 @@
 mod endings;
 
-use super::{Domain, Evaluation, Globalisation, Iteration, Options, Outcome, Residuals, Status, minimise};
+use super::{
+    Evaluation, Globalisation, Iteration, LinearConstraints, Options, Outcome, Residuals, Status, minimise,
+};
 use crate::optimise::robust::Robust;
 use nalgebra::{Complex, DMatrix, DVector};
 use rand::SeedableRng;
@@ -42,13 +44,13 @@ impl Curve {
         Self { model, at, measured, evaluations: 0 }
     }
 
-    fn fit(&mut self, start: &[f64], domain: &Domain, options: &Options) -> Outcome {
+    fn fit(&mut self, start: &[f64], domain: &LinearConstraints, options: &Options) -> Outcome {
         let Ok(outcome) = minimise(self, &DVector::from(start.to_vec()), domain, options, &mut |_| {});
         outcome
     }
 
     fn fit_freely(&mut self, start: &[f64]) -> Outcome {
-        self.fit(start, &Domain::everywhere(start.len()), &Options::default())
+        self.fit(start, &LinearConstraints::everywhere(start.len()), &Options::default())
     }
 }
 
@@ -154,7 +156,7 @@ fn bounds_active_at_the_solution_agree_with_enumeration() {
             let mut reduced =
                 Reduced { curve: Curve::new(model, &truth, steps(40, 0.5), 0.01), caps, free: free.clone() };
             let from = DVector::from_iterator(free.len(), free.iter().map(|&j| start[j]));
-            let domain = Domain::everywhere(free.len());
+            let domain = LinearConstraints::everywhere(free.len());
             let Ok(mut outcome) = minimise(&mut reduced, &from, &domain, &Options::default(), &mut |_| {});
             outcome.point = reduced.whole(&outcome.point);
             let inside = (0..4).all(|j| outcome.point[j] <= caps[j] + 1e-9);
@@ -164,8 +166,11 @@ fn bounds_active_at_the_solution_agree_with_enumeration() {
             }
         }
         let reference = best.unwrap();
-        let domain =
-            Domain { rows: -DMatrix::identity(4, 4), bounds: -DVector::from(caps.to_vec()), roughness: None };
+        let domain = LinearConstraints {
+            rows: -DMatrix::identity(4, 4),
+            bounds: -DVector::from(caps.to_vec()),
+            roughness: None,
+        };
         let outcome =
             Curve::new(model, &truth, steps(40, 0.5), 0.01).fit(&start, &domain, &Options::default());
         assert!(outcome.status.converged(), "{}", outcome.status);
@@ -208,13 +213,16 @@ impl Residuals for Reduced {
 
 #[test]
 fn a_start_outside_is_moved_inside() {
-    let domain = Domain { rows: matrix(&[[1.0, 0.0]]), bounds: vector(&[200.0]), roughness: None };
+    let domain = LinearConstraints { rows: matrix(&[[1.0, 0.0]]), bounds: vector(&[200.0]), roughness: None };
     let mut curve = Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.0);
     let outcome = curve.fit(&[-100.0, 1e-3], &domain, &Options::default());
     assert!(outcome.projected && outcome.iterations.iter().all(|step| step.solved));
     assert_close(&outcome.point, &[239.0, 5.5e-4], 1e-9);
-    let nowhere =
-        Domain { rows: matrix(&[[1.0, 0.0], [-1.0, 0.0]]), bounds: vector(&[1.0, 1.0]), roughness: None };
+    let nowhere = LinearConstraints {
+        rows: matrix(&[[1.0, 0.0], [-1.0, 0.0]]),
+        bounds: vector(&[1.0, 1.0]),
+        roughness: None,
+    };
     let outcome = curve.fit(&[0.0, 1e-3], &nowhere, &Options::default());
     let said = "the linearised step failed: the inequalities contradict one another";
     assert_eq!(outcome.status.to_string(), said);
@@ -244,7 +252,8 @@ fn points_that_cannot_be_evaluated_are_stepped_around() {
         let start = vector(&[500.0, 1e-4]);
         let options = Options { initial_radius: 100.0, ..Options::default() };
         let mut problem = Fragile { curve: curve(), most };
-        let Ok(outcome) = minimise(&mut problem, &start, &Domain::everywhere(2), &options, observe);
+        let Ok(outcome) =
+            minimise(&mut problem, &start, &LinearConstraints::everywhere(2), &options, observe);
         outcome
     };
     let mut failures = 0;
@@ -265,14 +274,15 @@ fn unseen_parameters_are_smoothed_and_do_not_disturb() {
     let model: Model = |b, x| (b[0] * x).exp() + b[1] * b[1] * x + b[2] * 0.0 + b[3] * 0.0 + b[4] * 0.0;
     let roughness =
         DMatrix::from_fn(3, 5, |i, j| [1.0, -2.0, 1.0].get(j.wrapping_sub(i)).copied().unwrap_or(0.0));
-    let domain = Domain { roughness: Some(roughness), ..Domain::everywhere(5) };
+    let domain = LinearConstraints { roughness: Some(roughness), ..LinearConstraints::everywhere(5) };
     let mut curve = Curve::new(model, &[1.0, 3.0, 0.0, 0.0, 0.0], steps(20, 0.1), 0.0);
     let outcome = curve.fit(&[0.5, 1.0, 70.0, -9.0, 0.0], &domain, &Options::default());
     assert!(outcome.status.converged(), "{}", outcome.status);
     assert_close(&outcome.point, &[1.0, 3.0, 5.0, 7.0, 9.0], 1e-9);
     assert_eq!(outcome.iterations.last().unwrap().rank, 2);
     // Without roughness they stay.
-    let outcome = curve.fit(&[0.5, 1.0, 70.0, -9.0, 4.0], &Domain::everywhere(5), &Options::default());
+    let outcome =
+        curve.fit(&[0.5, 1.0, 70.0, -9.0, 4.0], &LinearConstraints::everywhere(5), &Options::default());
     assert_close(&outcome.point, &[1.0, 3.0, 70.0, -9.0, 4.0], 1e-9);
 }
 
@@ -280,13 +290,13 @@ fn unseen_parameters_are_smoothed_and_do_not_disturb() {
 fn the_published_rule_stops_early_and_says_so() {
     let mut curve = Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.5);
     let options = Options { gain_tolerance: 0.01, ..Options::default() };
-    let early = curve.fit(&[250.0, 5e-4], &Domain::everywhere(2), &options);
+    let early = curve.fit(&[250.0, 5e-4], &LinearConstraints::everywhere(2), &options);
     assert_eq!(early.status.to_string(), "the residual fell by less than 1e-2 between two iterations");
     let full = curve.fit_freely(&[250.0, 5e-4]);
     assert!(early.iterations.len() < full.iterations.len());
     assert!(early.sum_of_squares < full.sum_of_squares * 1.01);
     let options = Options { max_iterations: 1, ..Options::default() };
-    let outcome = curve.fit(&[500.0, 1e-4], &Domain::everywhere(2), &options);
+    let outcome = curve.fit(&[500.0, 1e-4], &LinearConstraints::everywhere(2), &options);
     assert_eq!(outcome.status.to_string(), "not converged after 1 iterations");
 }
 
@@ -299,7 +309,7 @@ fn a_line_search_halves_steps_until_they_are_no_worse() {
     // From 5 the whole step ends at −25, its halves at −10, −2.5 and 1.25: the last is nearer to 2.
     let overshoots: Model = |b, _| (b[0] - 2.0) / ((b[0] - 2.0) * (b[0] - 2.0) + 1.0).sqrt();
     let mut curve = Curve::new(overshoots, &[2.0], vec![0.0], 0.0);
-    let outcome = curve.fit(&[5.0], &Domain::everywhere(1), &line_search(1e-13));
+    let outcome = curve.fit(&[5.0], &LinearConstraints::everywhere(1), &line_search(1e-13));
     assert!(outcome.status.converged() && (outcome.point[0] - 2.0).abs() < 1e-9, "{}", outcome.point);
     let kept: Vec<bool> = outcome.iterations.iter().map(|iteration| iteration.accepted).collect();
     assert_eq!(kept[..4], [false, false, false, true]);
@@ -312,7 +322,7 @@ fn a_line_search_halves_steps_until_they_are_no_worse() {
 #[test]
 fn a_line_search_ends_with_the_first_small_gain() {
     let mut curve = Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.5);
-    let outcome = curve.fit(&[250.0, 5e-4], &Domain::everywhere(2), &line_search(0.01));
+    let outcome = curve.fit(&[250.0, 5e-4], &LinearConstraints::everywhere(2), &line_search(0.01));
     assert_eq!(outcome.status.to_string(), "the residual fell by less than 1e-2 between two iterations");
     let gains: Vec<f64> = outcome.iterations.iter().filter_map(|i| i.gain.filter(|_| i.accepted)).collect();
     let (last, before) = gains.split_last().unwrap();
@@ -320,7 +330,7 @@ fn a_line_search_ends_with_the_first_small_gain() {
     let full = curve.fit_freely(&[250.0, 5e-4]);
     assert!(outcome.sum_of_squares < full.sum_of_squares * 1.01);
     let limited = Options { max_iterations: 1, ..line_search(1e-13) };
-    let outcome = curve.fit(&[500.0, 1e-4], &Domain::everywhere(2), &limited);
+    let outcome = curve.fit(&[500.0, 1e-4], &LinearConstraints::everywhere(2), &limited);
     assert_eq!(outcome.status, Status::IterationLimit { limit: 1 });
 }
 
@@ -328,12 +338,13 @@ fn a_line_search_ends_with_the_first_small_gain() {
 fn a_line_search_keeps_to_the_domain_and_off_points_without_an_answer() {
     let curve = || Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.0);
     let start = vector(&[500.0, 1e-4]);
-    let bounded = Domain { rows: matrix(&[[0.0, -1.0]]), bounds: vector(&[-4e-4]), roughness: None };
+    let bounded =
+        LinearConstraints { rows: matrix(&[[0.0, -1.0]]), bounds: vector(&[-4e-4]), roughness: None };
     let outcome = curve().fit(start.as_slice(), &bounded, &line_search(1e-13));
     assert!(outcome.status.converged() && outcome.point[1] <= 4e-4 * (1.0 + 1e-12));
     assert_eq!(outcome.iterations.last().unwrap().active.len(), 1);
     let mut fragile = Fragile { curve: curve(), most: 5.6e-4 };
-    let everywhere = Domain::everywhere(2);
+    let everywhere = LinearConstraints::everywhere(2);
     let Ok(outcome) = minimise(&mut fragile, &start, &everywhere, &line_search(1e-13), &mut |_| {});
     assert_close(&outcome.point, &[239.0, 5.5e-4], 1e-6);
     let mut fragile = Fragile { curve: curve(), most: 1e-4 };
@@ -346,7 +357,7 @@ fn jacobians_on_demand_change_nothing_but_the_count() {
     let curve = || Curve::new(saturation, &[239.0, 5.5e-4], steps(14, 55.0), 0.5);
     let (mut at_once, mut later) = (curve(), curve());
     let on_demand = Options { jacobian_at_trials: false, ..Options::default() };
-    let everywhere = Domain::everywhere(2);
+    let everywhere = LinearConstraints::everywhere(2);
     let first = at_once.fit(&[500.0, 1e-4], &everywhere, &Options::default());
     let second = later.fit(&[500.0, 1e-4], &everywhere, &on_demand);
     assert_eq!(first.point, second.point);
@@ -377,7 +388,7 @@ impl Residuals for Rough {
 fn a_gain_below_the_tolerance_that_roughness_hides_is_no_failure() {
     let fit = |gain_tolerance| {
         let options = Options { gain_tolerance, ..Options::default() };
-        let domain = Domain::everywhere(1);
+        let domain = LinearConstraints::everywhere(1);
         let Ok(outcome) =
             minimise(&mut Rough { first: None }, &vector(&[0.97]), &domain, &options, &mut |_| {});
         outcome.status
@@ -418,7 +429,7 @@ fn where_all_residuals_are_bent_few_steps_suffice() {
     curve.measured.iter_mut().enumerate().for_each(|(i, y)| *y *= if i % 2 == 0 { 1.1 } else { 0.93 });
     let (limit, start) = (0.03, vector(&[3.0, 3.0]));
     let mut bent = Bent(curve, Robust { limit });
-    let domain = Domain::everywhere(2);
+    let domain = LinearConstraints::everywhere(2);
     let Ok(outcome) = minimise(&mut bent, &start, &domain, &Options::default(), &mut |_| {});
     assert!(outcome.status.converged(), "{}", outcome.status);
     assert!(outcome.iterations.len() <= 30, "{} steps", outcome.iterations.len());

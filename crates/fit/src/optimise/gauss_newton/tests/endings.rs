@@ -19,7 +19,7 @@ fn fit(
     start: f64,
     options: &Options,
 ) -> Result<Outcome, &'static str> {
-    minimise(&mut Given(evaluate), &vector(&[start]), &Domain::everywhere(1), options, &mut |_| {})
+    minimise(&mut Given(evaluate), &vector(&[start]), &LinearConstraints::everywhere(1), options, &mut |_| {})
 }
 
 /// A residual, beside a constant one that keeps the sum of squares at or above 1.

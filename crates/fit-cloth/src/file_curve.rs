@@ -20,7 +20,7 @@ pub enum Source {
 
 /// A curve of a file, with the units of that file.
 #[derive(Debug, Clone)]
-pub struct Subject {
+pub struct FileCurve {
     /// Component of the curve; of a table it matters only for rows below zero.
     pub component: Component,
     /// Name in messages: the component, or the file name of a table.
@@ -37,7 +37,7 @@ pub struct Subject {
     pub unit: &'static str,
 }
 
-impl Subject {
+impl FileCurve {
     /// All findings of the check.
     pub fn findings(&self) -> Vec<Finding> {
         check(&self.curve, &self.context)
@@ -55,7 +55,7 @@ pub fn read(
     path: &Path,
     component: Option<Component>,
     model: Option<Model>,
-) -> Result<(Source, Vec<Subject>)> {
+) -> Result<(Source, Vec<FileCurve>)> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
         return read_material(path, component);
     }
@@ -78,18 +78,18 @@ pub fn read(
     };
     let context = context(model, component, None);
     let subject =
-        Subject { component, name, curve, context, strain_per_unit: file.strain_per_unit(), axis, unit };
+        FileCurve { component, name, curve, context, strain_per_unit: file.strain_per_unit(), axis, unit };
     Ok((Source::Table(file), vec![subject]))
 }
 
-fn read_material(path: &Path, wanted: Option<Component>) -> Result<(Source, Vec<Subject>)> {
+fn read_material(path: &Path, wanted: Option<Component>) -> Result<(Source, Vec<FileCurve>)> {
     let file = MaterialFile::read(path)?;
     let curves = file.curves()?;
     let components = curves.components().filter(|component| wanted.is_none_or(|wanted| wanted == *component));
-    let subjects: Vec<Subject> = components
+    let subjects: Vec<FileCurve> = components
         .filter_map(|component| {
             let hinges = file.model.strain_measure(component).is_per_metre();
-            Some(Subject {
+            Some(FileCurve {
                 component,
                 name: component.to_string(),
                 curve: curves.get(component)?.clone(),

@@ -36,7 +36,7 @@ impl Solver<'_> {
     ///
     /// # Panics
     /// If the length of `x` or `target` differs from the cloth's number of coordinates.
-    pub fn drive(
+    pub fn load_steps(
         &mut self,
         curves: &Curves,
         x: &mut [f64],

@@ -43,7 +43,7 @@ const BRIDGED: f64 = 2.0;
 pub(super) type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
 
 /// A stage's replicas under unknown curves.
-pub struct Simulation<'a> {
+pub struct Equilibria<'a> {
     pub(super) replicas: &'a [Replica],
     /// Per replica, per cloth.
     pub(super) solvers: Vec<Vec<SolverPool<'a>>>,
@@ -56,7 +56,7 @@ pub struct Simulation<'a> {
     pub(super) meter: Arc<Meter>,
 }
 
-impl<'a> Simulation<'a> {
+impl<'a> Equilibria<'a> {
     /// Finds the first equilibria and drops frames without one.
     ///
     /// * `unknowns` — the curves to start from; their strains are those of the fitted control points

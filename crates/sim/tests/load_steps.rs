@@ -42,7 +42,7 @@ fn compare(sample: &Sample, way: Way<'_>) -> Equilibrium {
         factorisations += reference.factorisations;
     }
     let target = moved(sample, &x, way, 1.0);
-    let found = solver.drive(&sample.curves, &mut x, &target, &settings);
+    let found = solver.load_steps(&sample.curves, &mut x, &target, &settings);
     assert!(found.converged() && !found.escaped, "{found:?}");
     assert!((found.energy / reference.energy - 1.0).abs() < 1e-8, "{found:?} {reference:?}");
     assert!(found.factorisations < factorisations, "{found:?} {factorisations}");
@@ -107,10 +107,10 @@ fn nowhere_to_go_is_a_solve() {
     let mut solver = Solver::new(&cloth);
     let mut x = sample.start.clone();
     let target = x.clone();
-    let found = solver.drive(&sample.curves, &mut x, &target, &Settings::default());
+    let found = solver.load_steps(&sample.curves, &mut x, &target, &Settings::default());
     assert!(found.converged(), "{found:?}");
     let before = x.clone();
-    let again = solver.drive(&sample.curves, &mut x, &target, &Settings::default());
+    let again = solver.load_steps(&sample.curves, &mut x, &target, &Settings::default());
     assert_eq!((again.status, again.iterations, x), (Status::Converged, 0, before));
 }
 
@@ -131,7 +131,7 @@ fn what_cannot_be_reached_leaves_the_last_balance() {
         (infinite, Settings::default(), Status::NotFinite),
         (far, never, Status::IterationLimit),
     ] {
-        let found = solver.drive(&sample.curves, &mut x, &target, &settings);
+        let found = solver.load_steps(&sample.curves, &mut x, &target, &settings);
         assert_eq!((found.status, &x), (status, &start), "{found:?}");
         assert!((found.energy / before.energy - 1.0).abs() < 1e-12 && found.imbalance <= found.tolerance);
     }
