@@ -57,7 +57,7 @@
 //! let found = solver.solve(&sample.curves, &mut x, &Settings::default());
 //! assert!(found.converged());
 //!
-//! Nominal stress λ k (λ² − 1)/2 = 5.38125 N/m, times the width.
+//! // Nominal stress λ k (λ² − 1)/2 = 5.38125 N/m, times the width.
 //! let force = solver.clip_forces()[1].x;
 //! assert!((force - 0.04 * 5.38125).abs() < 1e-12);
 //! # Ok(())
