@@ -30,44 +30,17 @@ const ZERO: f64 = 1e-9;
 
 /// Measures a table can have, the most specific column names first; `None` = stretch or shear, in the strain of the
 /// model that reads the table.
-const MEASURES: [Option<StrainMeasure>; 6] = [
-    Some(StrainMeasure::Hinge),
-    Some(StrainMeasure::Green),
-    Some(StrainMeasure::Engineering),
-    Some(StrainMeasure::Shear),
-    Some(StrainMeasure::Diagonal),
-    None,
-];
+fn measures() -> impl Iterator<Item = Option<StrainMeasure>> {
+    let named = StrainMeasure::ALL.into_iter().filter(|measure| *measure != StrainMeasure::RingTwo);
+    named.map(Some).chain([None])
+}
 
 /// Column names: strain or curvature, secant stiffness, stress or moment, and the two sides of the band.
 pub fn columns(measure: Option<StrainMeasure>) -> [&'static str; 5] {
-    const K: &str = "stiffness_n_per_m";
-    match measure {
-        None => ["strain", K, "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
-        Some(StrainMeasure::Green) => {
-            ["green_strain", K, "pk2_stress_n_per_m", "pk2_stress_low_n_per_m", "pk2_stress_high_n_per_m"]
-        }
-        Some(StrainMeasure::Engineering) => {
-            [ENGINEERING[0], K, ENGINEERING[1], "nominal_stress_low_n_per_m", "nominal_stress_high_n_per_m"]
-        }
-        Some(StrainMeasure::Shear) => [
-            "shear_strain",
-            K,
-            "shear_stress_n_per_m",
-            "shear_stress_low_n_per_m",
-            "shear_stress_high_n_per_m",
-        ],
-        Some(StrainMeasure::Diagonal) => [
-            "diagonal_strain",
-            K,
-            "diagonal_stress_n_per_m",
-            "diagonal_stress_low_n_per_m",
-            "diagonal_stress_high_n_per_m",
-        ],
-        Some(StrainMeasure::Hinge | StrainMeasure::RingTwo) => {
-            ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"]
-        }
-    }
+    measure.map_or(
+        ["strain", "stiffness_n_per_m", "stress_n_per_m", "stress_low_n_per_m", "stress_high_n_per_m"],
+        StrainMeasure::columns,
+    )
 }
 
 /// Engineering strain √(1 + 2E) − 1 and nominal stress S √(1 + 2E) of a row of Green strain and PK2 stress. `None`
@@ -322,14 +295,12 @@ impl CurveFile {
 
     /// A component and a model whose tables have these columns.
     pub fn typical(&self) -> (Component, Model) {
-        match self.measure {
-            None | Some(StrainMeasure::Green) => (Component::StretchWeft, Model::Stvk),
-            Some(StrainMeasure::Engineering) => (Component::StretchWeft, Model::SoftConstraint),
-            Some(StrainMeasure::Shear) => (Component::Shear, Model::Stvk),
-            Some(StrainMeasure::Diagonal) => (Component::Shear, Model::Springs),
-            Some(StrainMeasure::Hinge) => (Component::BendWeft, Model::Stvk),
-            Some(StrainMeasure::RingTwo) => (Component::BendWeft, Model::Springs),
-        }
+        let pairs =
+            Model::ALL.into_iter().flat_map(|model| Component::ALL.map(|component| (component, model)));
+        let mut pairs = pairs.filter(|(component, model)| {
+            self.measure.is_none_or(|measure| model.strain_measure(*component) == measure)
+        });
+        pairs.next().unwrap_or((Component::StretchWeft, Model::Stvk))
     }
 
     /// True if a row lies below zero.

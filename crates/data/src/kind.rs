@@ -78,6 +78,7 @@ struct Description {
     holding: Holding,
     /// Angle of the pull or the overhang to weft, degrees; of a picture frame and of corners 0.
     degrees_from_weft: f64,
+    /// None: the test serves for validation only.
     shows: &'static [Component],
     extension: Extension,
     summary: Option<Summary>,
@@ -176,10 +177,10 @@ impl Kind {
 
     /// True for a strip that is pulled along its yarns, in which shear and bending play no part.
     pub fn is_along_yarns(self) -> bool {
-        self.holding() == Holding::Strip && self.shows().iter().all(|component| component.is_stretch())
+        self.holding() == Holding::Strip && self.degrees_from_weft() % 90.0 == 0.0
     }
 
-    /// True for a strip cut on the bias: pulled taut, it stays in its plane, and nobody saw it buckle.
+    /// True for a strip cut across the yarns: pulled taut, it stays in its plane, and nobody saw it buckle.
     pub fn is_on_the_bias(self) -> bool {
         self.holding() == Holding::Strip && !self.is_along_yarns()
     }

@@ -127,7 +127,7 @@ fn a_strip_that_is_not_free_is_told_of_and_each_option_mends_it() {
     let words = text(&warned.stderr);
     let start = "warning: sequence stretch-weft, weft.csv row 1: found 0.100 N at the gauge length, 80.00 mm";
     assert!(words.starts_with(start) && words.lines().count() == 1, "{words}");
-    for option in ["(import strip --replace --free-length-m 0.07800", "--zero 0.100)"] {
+    for option in ["(import strip --replace --free-length-m 0.07800", "--zero 0.1)"] {
         assert!(words.contains(option), "{words}");
     }
     for option in [["--free-length-m", "0.078"], ["--preload", "0.1"]] {

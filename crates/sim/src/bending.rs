@@ -4,7 +4,7 @@ mod discrete_shell;
 
 pub use discrete_shell::Hinge;
 
-use crate::element::Pass;
+use crate::element::{Change, Pass};
 use crate::error::Result;
 use crate::material::{Component, Model};
 use crate::membrane::{Spring, ring_two};
@@ -61,6 +61,14 @@ impl Rolled {
 }
 
 impl Bending {
+    /// Changes the list of elements.
+    pub(crate) fn change(&mut self, change: &mut impl Change) {
+        match self {
+            Self::Springs(elements) => change.change::<2, 1, _>(elements),
+            Self::DiscreteShells(elements) => change.change::<4, 1, _>(elements),
+        }
+    }
+
     /// Runs a pass over the elements.
     pub(crate) fn visit(&self, pass: &mut impl Pass) {
         match self {
@@ -93,9 +101,9 @@ impl Bending {
         if !components.iter().any(|component| component.is_bending()) {
             return Ok(None);
         }
-        Ok(Some(match model {
-            Model::Springs => Self::Springs(ring_two(mesh, components)?),
-            Model::SoftConstraint | Model::Stvk => {
+        Ok(Some(match model.is_of_springs() {
+            true => Self::Springs(ring_two(mesh, components)?),
+            false => {
                 let hinges = Hinge::all(mesh)?;
                 Self::DiscreteShells(
                     hinges.into_iter().filter(|h| components.contains(&h.component)).collect(),

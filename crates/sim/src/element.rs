@@ -35,6 +35,9 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
     /// Area over which the energy density is integrated, m².
     fn area(&self) -> f64;
 
+    /// The area, or a length that it is proportional to: of elements that are alike one gets the sum.
+    fn extent(&mut self) -> &mut f64;
+
     /// The strains (bending: 1/m).
     fn strains(&self, x: &[Point<N>; K]) -> [f64; S];
 
@@ -101,6 +104,12 @@ pub(crate) trait Pass {
         part: usize,
         elements: &[E],
     );
+}
+
+/// A change of the lists of elements, whatever their kind.
+pub(crate) trait Change {
+    /// Changes the elements of the membrane or of bending.
+    fn change<const K: usize, const S: usize, E: Element<K, 3, S>>(&mut self, elements: &mut Vec<E>);
 }
 
 /// Sums energies, J.

@@ -47,10 +47,7 @@ impl Model {
         match (component.is_stretch(), compression) {
             (false, _) => NegativeStrain::Odd,
             (true, Compression::None) => NegativeStrain::Slack,
-            (true, Compression::ZeroStrain) => match self.strain_measure(component) {
-                StrainMeasure::Green => NegativeStrain::Green,
-                _ => NegativeStrain::Linear,
-            },
+            (true, Compression::ZeroStrain) => self.strain_measure(component).compression(),
         }
     }
 

@@ -11,7 +11,7 @@ pub use spring::{Spring, ring_one, ring_two};
 pub use stvk::StvkTriangle;
 pub use triangle::Triangle;
 
-use crate::element::Pass;
+use crate::element::{Change, Pass};
 use crate::error::Result;
 use crate::material::{Component, Model};
 use crate::mesh::Mesh;
@@ -39,6 +39,15 @@ impl Membrane {
             Model::SoftConstraint => Self::SoftConstraint(triangles().map(SoftTriangle).collect()),
             Model::Stvk => Self::Stvk(triangles().map(StvkTriangle).collect()),
         })
+    }
+
+    /// Changes the list of elements.
+    pub(crate) fn change(&mut self, change: &mut impl Change) {
+        match self {
+            Self::Springs(elements) => change.change::<2, 1, _>(elements),
+            Self::SoftConstraint(elements) => change.change::<3, 3, _>(elements),
+            Self::Stvk(elements) => change.change::<3, 3, _>(elements),
+        }
     }
 
     /// Runs a pass over the elements, in the plane or in space.

@@ -13,6 +13,7 @@
 //! P is the force per rest width of a strip (engineering strain, nominal stress), S the force along a bar per its
 //! length, M the moment per width. Diagonals: both diagonals of square cells.
 
+use crate::curve::NegativeStrain;
 use crate::curve::soundness::{BENDING_STIFFNESS, MEMBRANE_STIFFNESS};
 
 /// Ratio of a hinge's own strain to the curvature, for a regular grid rolled about one of its axes. The flexural
@@ -44,6 +45,27 @@ pub enum StrainMeasure {
 }
 
 impl StrainMeasure {
+    /// All measures.
+    pub const ALL: [Self; 6] =
+        [Self::Green, Self::Engineering, Self::Shear, Self::Diagonal, Self::Hinge, Self::RingTwo];
+
+    /// True for stretch and shear, false for bending.
+    pub fn is_of_membrane(self) -> bool {
+        match self {
+            Self::Green | Self::Engineering | Self::Shear | Self::Diagonal => true,
+            Self::Hinge | Self::RingTwo => false,
+        }
+    }
+
+    /// The rule below zero strain under which a sheet in compression keeps its stiffness at zero.
+    pub fn compression(self) -> NegativeStrain {
+        match self {
+            Self::Green => NegativeStrain::Green,
+            Self::Engineering => NegativeStrain::Linear,
+            Self::Shear | Self::Diagonal | Self::Hinge | Self::RingTwo => NegativeStrain::Odd,
+        }
+    }
+
     /// Names of strain and stress. Curvature and moment for hinges and ring-2 springs, whose tables are in physical
     /// measures.
     pub fn names(self) -> [&'static str; 2] {
@@ -53,6 +75,40 @@ impl StrainMeasure {
             Self::Shear => ["shear strain", "shear stress"],
             Self::Diagonal => ["diagonal strain", "diagonal stress"],
             Self::Hinge | Self::RingTwo => ["curvature", "moment per width"],
+        }
+    }
+
+    /// Column names of a table: strain, secant stiffness, stress, and the lower and upper limit of the stress.
+    pub fn columns(self) -> [&'static str; 5] {
+        const K: &str = "stiffness_n_per_m";
+        match self {
+            Self::Green => {
+                ["green_strain", K, "pk2_stress_n_per_m", "pk2_stress_low_n_per_m", "pk2_stress_high_n_per_m"]
+            }
+            Self::Engineering => [
+                "engineering_strain",
+                K,
+                "nominal_stress_n_per_m",
+                "nominal_stress_low_n_per_m",
+                "nominal_stress_high_n_per_m",
+            ],
+            Self::Shear => [
+                "shear_strain",
+                K,
+                "shear_stress_n_per_m",
+                "shear_stress_low_n_per_m",
+                "shear_stress_high_n_per_m",
+            ],
+            Self::Diagonal => [
+                "diagonal_strain",
+                K,
+                "diagonal_stress_n_per_m",
+                "diagonal_stress_low_n_per_m",
+                "diagonal_stress_high_n_per_m",
+            ],
+            Self::Hinge | Self::RingTwo => {
+                ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"]
+            }
         }
     }
 
@@ -72,9 +128,9 @@ impl StrainMeasure {
     /// Plausible range of a cloth's largest stiffness, in the units of stiffness; `None` if it depends on the mesh.
     pub fn plausible_stiffness(self) -> Option<[f64; 2]> {
         match self {
-            Self::Green | Self::Engineering | Self::Shear | Self::Diagonal => Some(MEMBRANE_STIFFNESS),
             Self::Hinge => Some(BENDING_STIFFNESS),
             Self::RingTwo => None,
+            Self::Green | Self::Engineering | Self::Shear | Self::Diagonal => Some(MEMBRANE_STIFFNESS),
         }
     }
 
@@ -140,20 +196,16 @@ impl StrainMeasure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::{NegativeStrain, StiffnessCurve};
+    use crate::curve::StiffnessCurve;
     use crate::finite_difference::derivative_error;
 
-    const MEASURES: [StrainMeasure; 5] = [
-        StrainMeasure::Green,
-        StrainMeasure::Engineering,
-        StrainMeasure::Shear,
-        StrainMeasure::Diagonal,
-        StrainMeasure::Hinge,
-    ];
+    fn measures() -> impl Iterator<Item = StrainMeasure> {
+        StrainMeasure::ALL.into_iter().filter(|measure| *measure != StrainMeasure::RingTwo)
+    }
 
     #[test]
     fn the_way_back_ends_where_it_began() {
-        for measure in MEASURES {
+        for measure in measures() {
             for physical in [-0.1, 1e-9, 0.02, 0.3, 0.9] {
                 let back = measure.physical(measure.strain(physical).unwrap()).unwrap();
                 assert!((back / physical - 1.0).abs() < 1e-7, "{measure:?}: {back}, {physical}");
@@ -167,7 +219,7 @@ mod tests {
     #[test]
     fn a_load_is_conjugate_to_its_physical_measure() {
         let curve = StiffnessCurve::new(vec![0.0, 0.5], vec![2.0, 5.0], NegativeStrain::Odd).unwrap();
-        for measure in MEASURES {
+        for measure in measures() {
             let energy = |p: f64| match measure {
                 StrainMeasure::Diagonal => {
                     let strain = |sine: f64| (1.0 + sine).sqrt() - 1.0;

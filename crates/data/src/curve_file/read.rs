@@ -1,6 +1,6 @@
 //! Reads a curve table.
 
-use super::{CurveFile, ENGINEERING, MEASURES, columns};
+use super::{CurveFile, ENGINEERING, columns, measures};
 use crate::error::Result;
 use crate::io::table::Table;
 use cloth_sim::strain_measure::StrainMeasure;
@@ -18,7 +18,7 @@ impl CurveFile {
         let names = |measure: &Option<StrainMeasure>| [columns(*measure)[0], columns(*measure)[2]];
         let is_of =
             |measure: &Option<StrainMeasure>| names(measure).iter().any(|name| table.has_quantity(name));
-        let Some(measure) = MEASURES.into_iter().find(is_of) else {
+        let Some(measure) = measures().find(is_of) else {
             let expected = "a curve: curvature_per_m and moment_n, or strain and stress_n_per_m (import tables of forces and \
                             lengths first)";
             return Err(table.bad_header("header", table.names(), expected));

@@ -17,8 +17,6 @@ const SET: Schema = Schema::new("set", &[]);
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FabricFile {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    schema: Option<String>,
     name: String,
     width_m: f64,
     height_m: f64,
@@ -29,12 +27,14 @@ struct FabricFile {
     source: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     notes: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    schema: Option<String>,
 }
 
 /// Reads and checks `fabric.toml`.
 pub(super) fn read(path: &Path) -> Result<Fabric> {
     let file = TomlFile::read(path)?;
-    let FabricFile { schema, name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes } =
+    let FabricFile { name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes, schema } =
         file.value()?;
     if let Some(id) = schema.filter(|id| SET.version_of(id) != Some(SET.version())) {
         return Err(file.invalid("schema", shown(&id), SET.expected(&id)));
@@ -66,6 +66,6 @@ pub(super) fn write(path: &Path, fabric: &Fabric) -> Result<()> {
     let Fabric { name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes } = fabric.clone();
     let schema = Some(SET.id());
     let file =
-        FabricFile { schema, name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes };
+        FabricFile { name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes, schema };
     write_file(path, written(path, &file)?.as_bytes())
 }

@@ -13,7 +13,7 @@ pub fn notice(notice: &Notice) -> String {
 
 fn option(remedy: &Remedy) -> String {
     match remedy {
-        Remedy::Zero(force) => format!("import strip --replace --zero {force:.3}"),
+        Remedy::Zero(force) => format!("import strip --replace --zero {force}"),
         Remedy::FreeLength(length) => format!("import strip --replace --free-length-m {length:.5}"),
         Remedy::Robust => "fit with --robust".into(),
     }

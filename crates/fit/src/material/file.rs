@@ -208,14 +208,11 @@ fn measure(model: Model, component: Component) -> String {
     let [strain, stress] = measure.names();
     let stress = stress.replace("PK2", "second Piola–Kirchhoff (PK2)");
     match measure {
-        StrainMeasure::Green
-        | StrainMeasure::Engineering
-        | StrainMeasure::Shear
-        | StrainMeasure::Diagonal => format!("{stress} per width [N/m] over {strain} [1]"),
+        measure if measure.is_of_membrane() => format!("{stress} per width [N/m] over {strain} [1]"),
         StrainMeasure::RingTwo => {
             "stress of ring-2 springs [N/m] over their strain [1], valid for this grid only".into()
         }
-        StrainMeasure::Hinge => format!(
+        _ => format!(
             "{stress} [N] over the strain of hinges [1/m], three times the curvature: stiffness_n_m is a third of the flexural \
              rigidity, rigidity_n_m"
         ),

@@ -174,6 +174,10 @@ impl Element<4, 3, 1> for Hinge {
         self.rest_length * self.width
     }
 
+    fn extent(&mut self) -> &mut f64 {
+        &mut self.rest_length
+    }
+
     fn strains(&self, x: &[Point<3>; 4]) -> [f64; 1] {
         [self.strain(&Geometry::new(x))]
     }

@@ -7,6 +7,7 @@
 //! ```
 
 use crate::bending::Bending;
+use crate::element::{Change, Element};
 use crate::membrane::Membrane;
 use crate::mesh::Mesh;
 use std::collections::hash_map::Entry;
@@ -38,43 +39,35 @@ impl<'a> Alike<'a> {
 
     /// Keeps one of each set of identical elements; returns the node pairs of the omitted ones.
     pub(super) fn merge(mut self, membrane: &mut Membrane, bending: &mut Option<Bending>) -> Vec<Twins> {
-        match membrane {
-            Membrane::Springs(springs) => self.merge_all(springs, |s| s.nodes.to_vec(), |s| &mut s.area),
-            Membrane::SoftConstraint(triangles) => {
-                self.merge_all(triangles, |t| t.0.nodes.to_vec(), |t| &mut t.0.area);
-            }
-            Membrane::Stvk(triangles) => {
-                self.merge_all(triangles, |t| t.0.nodes.to_vec(), |t| &mut t.0.area);
-            }
-        }
-        match bending {
-            Some(Bending::Springs(springs)) => {
-                self.merge_all(springs, |s| s.nodes.to_vec(), |s| &mut s.area);
-            }
-            Some(Bending::DiscreteShells(hinges)) => {
-                self.merge_all(hinges, |h| h.nodes.to_vec(), |h| &mut h.rest_length);
-            }
-            None => {}
+        membrane.change(&mut self);
+        if let Some(bending) = bending {
+            bending.change(&mut self);
         }
         self.twins.into_iter().collect()
     }
 
-    /// * `extent` — an element's area, or a quantity proportional to it
-    fn merge_all<E>(
-        &mut self,
-        elements: &mut Vec<E>,
-        nodes: impl Fn(&E) -> Vec<usize>,
-        extent: impl Fn(&mut E) -> &mut f64,
-    ) {
+    fn key(&self, nodes: &[usize]) -> Key {
+        let unit = SAME_OFFSET * self.mean_edge;
+        let offsets = nodes.iter().flat_map(|&node| {
+            let offset = self.mesh.positions[node] - self.mesh.positions[nodes[0]];
+            let material = self.mesh.material[node] - self.mesh.material[nodes[0]];
+            [offset.x, offset.y, offset.z, material.x, material.y].map(|c| (c / unit).round() as i64)
+        });
+        (nodes.iter().map(|&node| self.leader[node]).collect(), offsets.collect())
+    }
+}
+
+impl Change for Alike<'_> {
+    fn change<const K: usize, const S: usize, E: Element<K, 3, S>>(&mut self, elements: &mut Vec<E>) {
         let mut kept: Vec<E> = Vec::new();
         let mut place_of: HashMap<Key, usize> = HashMap::new();
         for mut element in elements.drain(..) {
-            let own = nodes(&element);
+            let own = element.nodes();
             match place_of.entry(self.key(&own)) {
                 Entry::Occupied(place) => {
                     let kept = &mut kept[*place.get()];
-                    let stands = nodes(kept);
-                    *extent(kept) += *extent(&mut element);
+                    let stands = kept.nodes();
+                    *kept.extent() += *element.extent();
                     let pairs = own[1..].iter().zip(&stands[1..]);
                     self.twins
                         .extend(pairs.map(|(&left_out, &kept)| [[own[0], left_out], [stands[0], kept]]));
@@ -86,16 +79,6 @@ impl<'a> Alike<'a> {
             }
         }
         *elements = kept;
-    }
-
-    fn key(&self, nodes: &[usize]) -> Key {
-        let unit = SAME_OFFSET * self.mean_edge;
-        let offsets = nodes.iter().flat_map(|&node| {
-            let offset = self.mesh.positions[node] - self.mesh.positions[nodes[0]];
-            let material = self.mesh.material[node] - self.mesh.material[nodes[0]];
-            [offset.x, offset.y, offset.z, material.x, material.y].map(|c| (c / unit).round() as i64)
-        });
-        (nodes.iter().map(|&node| self.leader[node]).collect(), offsets.collect())
     }
 }
 

@@ -50,6 +50,10 @@ impl<const N: usize> Element<2, N, 1> for Spring {
         self.area
     }
 
+    fn extent(&mut self) -> &mut f64 {
+        &mut self.area
+    }
+
     #[inline(always)]
     fn strains(&self, x: &[Point<N>; 2]) -> [f64; 1] {
         [self.length(x).1 / self.rest_length - 1.0]

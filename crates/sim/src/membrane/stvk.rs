@@ -30,6 +30,10 @@ impl<const N: usize> Element<3, N, 3> for StvkTriangle {
         self.0.area
     }
 
+    fn extent(&mut self) -> &mut f64 {
+        &mut self.0.area
+    }
+
     #[inline(always)]
     fn strains(&self, x: &[Point<N>; 3]) -> [f64; 3] {
         let [w_u, w_v] = self.0.deformation(x);

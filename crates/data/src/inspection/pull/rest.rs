@@ -61,7 +61,7 @@ fn beyond(pull: &Pull, loading: &[[f64; 2]]) -> Option<Notice> {
         let (cause, remedies) = match length.filter(|length| *length > pull.gauge) {
             Some(length) => {
                 let slack = format!("the strip was slack, {}; or the zero is off", free_length(length));
-                (slack, vec![Remedy::FreeLength(length)])
+                (slack, vec![longer(length)])
             }
             None => cause(pull, force, length.map(|length| (length, None)), None),
         };
@@ -100,7 +100,7 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
     if matters(pull, level, shift) {
         let found = format!("{} N while the strip is slack", digits(level, 3));
         let expected = format!("none: the load cell's zero is off, {}", taking_off(level));
-        let remedies = vec![Remedy::Zero(level)];
+        let remedies = vec![zero(level)];
         notices.push(pull.notice(Severity::Doubt, first, found, expected).with(remedies));
     }
     let gauge = format!("the gauge length, {:.2} mm", 1e3 * pull.gauge);
@@ -109,13 +109,13 @@ fn seen(pull: &Pull, &Toe { length, level, shift }: &Toe, near: f64) -> Vec<Noti
         let taut = pull.readings.iter().find(|reading| reading.separation >= length).unwrap_or(first);
         let found = format!("no force until the clamps are {:.2} mm apart", 1e3 * length);
         let expected = format!("force beyond {gauge}: the strip was slack, {}", free_length(length));
-        let remedies = vec![Remedy::FreeLength(length)];
+        let remedies = vec![longer(length)];
         notices.push(pull.notice(Severity::Doubt, taut, found, expected).with(remedies));
     }
     if length < pull.gauge - near {
         let found = format!("force from a clamp distance of {:.2} mm on", 1e3 * length);
         let expected = format!("none below {gauge}: {}", free_length(length));
-        let remedies = vec![Remedy::FreeLength(length)];
+        let remedies = vec![longer(length)];
         notices.push(pull.notice(Severity::Doubt, first, found, expected).with(remedies));
     }
     notices
@@ -157,7 +157,7 @@ fn cause(
     length: Option<(f64, Option<f64>)>,
     slack: Option<f64>,
 ) -> (String, Vec<Remedy>) {
-    let zero = format!("the load cell's zero is off, {}", taking_off(force));
+    let zeroed = format!("the load cell's zero is off, {}", taking_off(force));
     // An extrapolation that leaves the plausible range gives no length.
     let length = length.filter(|(length, _)| (0.5 * pull.gauge..pull.gauge).contains(length));
     let tension = match length {
@@ -171,15 +171,25 @@ fn cause(
         }
     };
     let is = |level: f64| slack.is_some_and(|slack| (slack - level).abs() <= pull.threshold());
-    let longer: Vec<Remedy> = length.map(|(length, _)| Remedy::FreeLength(length)).into_iter().collect();
+    let lengths: Vec<Remedy> = length.map(|(length, _)| longer(length)).into_iter().collect();
     if force < 0.0 || is(force) {
-        (zero, vec![Remedy::Zero(force)])
+        (zeroed, vec![zero(force)])
     } else if is(0.0) {
-        (tension, longer)
+        (tension, lengths)
     } else {
-        let both = format!("{tension}; or {zero}: its unloaded reading tells which");
-        (both, [longer, vec![Remedy::Zero(force)]].concat())
+        let both = format!("{tension}; or {zeroed}: its unloaded reading tells which");
+        (both, [lengths, vec![zero(force)]].concat())
     }
+}
+
+/// Subtracts a force, as exact as it is printed.
+fn zero(force: f64) -> Remedy {
+    Remedy::Zero(digits(force, 3).parse().unwrap_or(force))
+}
+
+/// Another free length, to a hundredth of a millimetre.
+fn longer(length: f64) -> Remedy {
+    Remedy::FreeLength((1e5 * length).round() / 1e5)
 }
 
 fn taking_off(force: f64) -> String {

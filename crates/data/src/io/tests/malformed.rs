@@ -84,7 +84,7 @@ fn fabric_file() {
             (
                 "width_m = 0.1",
                 "\" \" = 840",
-                ":2 blanks: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes",
+                ":2 blanks: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes, schema",
             ),
             (
                 "width_m = 0.1",
@@ -105,7 +105,7 @@ fn fabric_file() {
             (
                 "width_m = 0.1",
                 "breadth = 100",
-                ":2 breadth: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes",
+                ":2 breadth: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes, schema",
             ),
             (
                 "width_m = 0.1",
@@ -122,7 +122,7 @@ fn fabric_file() {
             (
                 "width_m = 0.1",
                 "\"a`\\n, expected `b\" = 1",
-                ":2 a: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes",
+                ":2 a: found an unknown key, expected one of name, width_m, height_m, areal_density_kg_m2, thickness_m, source, notes, schema",
             ),
             (
                 "0.46",
