@@ -21,7 +21,7 @@ impl Progress for Silent {
 }
 
 fn main() -> Result<()> {
-    let coarse = Extent { noises: vec![1.0], seeds: 1, noise_nodes: 5, rig_nodes: 9, ..Extent::quick() };
+    let coarse = Extent { noises: vec![1.0], seeds: 1, noise_nodes: 13, rig_nodes: 25, ..Extent::quick() };
     let extent = Extent { topics: vec![Topic::Noise], ..coarse };
     let subject = Subject::built_in(&extent)?;
     println!("{}", study_csv(&study::run(&subject, &extent, &Silent)?));
