@@ -49,7 +49,7 @@ pub enum Error {
     },
     /// A measurement that contradicts itself.
     #[error("{0}")]
-    Contradiction(Notice),
+    Contradiction(Box<Notice>),
     /// A setting outside its range.
     #[error("{field}: found {found}, expected {expected}")]
     Setting {

@@ -47,7 +47,10 @@ impl Inspection {
             let refused = |(name, kind): &(String, Kind)| *name == notice.sequence && kinds.contains(kind);
             notice.severity == Severity::Refusal && self.refused.iter().any(refused)
         };
-        self.notices.iter().find(of_kind).map_or(Ok(()), |notice| Err(Error::Contradiction(notice.clone())))
+        self.notices
+            .iter()
+            .find(of_kind)
+            .map_or(Ok(()), |notice| Err(Error::Contradiction(Box::new(notice.clone()))))
     }
 }
 

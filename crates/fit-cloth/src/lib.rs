@@ -14,10 +14,9 @@
 //! | [`cli`] | all commands with their arguments |
 //! | [`command`] | the commands, one file each |
 //! | [`options`] | flags shared by several commands |
-//! | [`subject`] | the curves given to `check` and `curve` |
+//! | [`file_curve`] | the curves given to `check` and `curve` |
 //! | [`text`], [`plot`], [`page`] | results as text, figures and an HTML page |
-//! | [`telling`], [`output`], [`progress`] | standard output and standard error; atomic file output; the progress line
-//! |
+//! | [`telling`], [`output`], [`progress`] | standard output and error; atomic output; the progress line |
 //! | [`outcome`], [`failure`] | the outcome of a completed command; the error that stopped one |
 
 pub mod cli;
