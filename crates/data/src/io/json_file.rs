@@ -33,7 +33,12 @@ pub fn parse_version<T: DeserializeOwned>(path: &Path, text: &str, schema: &Sche
     match schema.version_of(id) {
         Some(version) if version == schema.version() => parse(path, text),
         Some(version) if version < schema.version() => {
+            // Where nothing else changes, errors keep their lines.
+            let current = text.replacen(id, &schema.id(), 1);
             schema.convert(version, &mut value);
+            if parse::<serde_json::Value>(path, &current)? == value {
+                return parse(path, &current);
+            }
             serde_path_to_error::deserialize(value)
                 .map_err(|error| explain(path, &error.path().to_string(), error.inner()))
         }

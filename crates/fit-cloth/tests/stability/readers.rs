@@ -237,7 +237,7 @@ const SCENE: &str = "name = \"scene\"\ngravity_m_s2 = [0.0, 0.0, -9.81]\nduratio
 const OWN: &str = "name = \"own\"\ngravity_m_s2 = [0.0, 0.0, -9.81]\n[sheet]\nmesh = { file = \"sheet.obj\" }\n\
                    [[held]]\nedge = \"left\"\n";
 const MATERIAL: &str = r#"{
-  "schema": "fit-cloth/material/1",
+  "schema": "fit-cloth/material/2",
   "model": "stvk",
   "compression": "zero-strain",
   "fabric": {

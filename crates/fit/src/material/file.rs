@@ -406,6 +406,11 @@ mod tests {
         );
         std::fs::write(&path, good.replace("material/2", "material/1")).unwrap();
         assert_eq!(MaterialFile::read(&path).unwrap(), fitted());
+        refused(
+            "material/2\",\n  \"model\"",
+            "material/1\",\n  \"models\"",
+            "material.json:3 models: found an unknown key",
+        );
         refused("\"schema\"", "schema", "material.json:2 JSON: found ");
         refused("\"variant\"", "\"variants\"", "material.json:4 variants: found an unknown key");
         refused(
