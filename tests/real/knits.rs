@@ -18,10 +18,11 @@
 //! and only printed.
 
 use cloth_data::frame::{MeasurementSet, Sequence};
+use cloth_data::kind::Kind;
 use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_fit::judge::prediction::predict;
 use cloth_fit::stage::report::{ForceRow, SequenceReport};
-use cloth_fit::stage::{Settings, Watch, kinds_of, stretch};
+use cloth_fit::stage::{Settings, Watch, stretch};
 use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::{data, weightless};
 use std::fs::{read_to_string, write};
@@ -161,7 +162,7 @@ fn predicted(model: Model) -> usize {
         let curves = Curves::from_iter([(component, report.curve.curve.clone())]);
         let prediction = predict(
             &unknown,
-            kinds_of(component),
+            &Kind::of(component).collect::<Vec<_>>(),
             &curves,
             &Default::default(),
             &settings,
