@@ -16,7 +16,7 @@ fuzz_target!(|bytes: &[u8]| {
     let text = file.to_csv();
     let back =
         CurveFile::read(&SAMPLE.put("back.csv", text.as_bytes())).expect("what was written can be read");
-    assert_eq!((back.kind, back.to_csv()), (file.kind, text));
+    assert_eq!((back.measure, back.to_csv()), (file.measure, text));
     for (component, model, compression) in [
         (Component::StretchWeft, Model::Stvk, Compression::ZeroStrain),
         (Component::StretchWarp, Model::SoftConstraint, Compression::None),
