@@ -20,7 +20,7 @@ pub enum Kind {
     StretchWeft,
     /// Two bars pulled apart along warp.
     StretchWarp,
-    /// The same on a strip cut at 45° to the yarns.
+    /// Two bars pulled apart on a strip cut at 45° to the yarns.
     StretchBias,
     /// Picture frame.
     Shear,
@@ -51,7 +51,7 @@ pub enum Holding {
     Table,
 }
 
-/// How far a test went.
+/// The measure of a test's progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extension {
     /// Mean relative change of distance between the clips' centres.
@@ -80,8 +80,6 @@ struct Description {
     degrees_from_weft: f64,
     /// None: the test serves for validation only.
     shows: &'static [Component],
-    extension: Extension,
-    summary: Option<Summary>,
 }
 
 impl Kind {
@@ -100,54 +98,18 @@ impl Kind {
 
     const fn description(self) -> Description {
         use Component::{BendDiagonal, BendWarp, BendWeft, Shear, StretchWarp, StretchWeft};
-        const fn strip(
-            name: &'static str,
-            degrees_from_weft: f64,
-            shows: &'static [Component],
-        ) -> Description {
-            let (holding, extension) = (Holding::Strip, Extension::Elongation);
-            Description { name, holding, degrees_from_weft, shows, extension, summary: None }
-        }
-        const fn table(
-            name: &'static str,
-            degrees_from_weft: f64,
-            shows: &'static [Component],
-        ) -> Description {
-            let (holding, extension) = (Holding::Table, Extension::Overhang);
-            Description { name, holding, degrees_from_weft, shows, extension, summary: None }
-        }
-        match self {
-            Self::StretchWeft => strip("stretch-weft", 0.0, &[StretchWeft]),
-            Self::StretchWarp => strip("stretch-warp", 90.0, &[StretchWarp]),
-            Self::StretchBias => strip("stretch-bias", 45.0, &[Shear]),
-            Self::Shear => Description {
-                name: "shear",
-                holding: Holding::PictureFrame,
-                degrees_from_weft: 0.0,
-                shows: &[Shear],
-                extension: Extension::ShearAngle,
-                summary: Some(Summary::AggregatedTorque),
-            },
-            Self::BendWeft => table("bend-weft", 0.0, &[BendWeft, BendDiagonal]),
-            Self::BendWarp => table("bend-warp", 90.0, &[BendWarp, BendDiagonal]),
-            Self::BendBias => table("bend-bias", 45.0, &[BendDiagonal]),
-            Self::ComplexShear => Description {
-                name: "complex-shear",
-                holding: Holding::Bars,
-                degrees_from_weft: 0.0,
-                shows: &[],
-                extension: Extension::ShearAngle,
-                summary: Some(Summary::AggregatedTorque),
-            },
-            Self::CornerPull => Description {
-                name: "corner-pull",
-                holding: Holding::Corners,
-                degrees_from_weft: 0.0,
-                shows: &[],
-                extension: Extension::Elongation,
-                summary: Some(Summary::StretchingForceDifference),
-            },
-        }
+        let (name, holding, degrees_from_weft, shows): (_, _, _, &[Component]) = match self {
+            Self::StretchWeft => ("stretch-weft", Holding::Strip, 0.0, &[StretchWeft]),
+            Self::StretchWarp => ("stretch-warp", Holding::Strip, 90.0, &[StretchWarp]),
+            Self::StretchBias => ("stretch-bias", Holding::Strip, 45.0, &[Shear]),
+            Self::Shear => ("shear", Holding::PictureFrame, 0.0, &[Shear]),
+            Self::BendWeft => ("bend-weft", Holding::Table, 0.0, &[BendWeft, BendDiagonal]),
+            Self::BendWarp => ("bend-warp", Holding::Table, 90.0, &[BendWarp, BendDiagonal]),
+            Self::BendBias => ("bend-bias", Holding::Table, 45.0, &[BendDiagonal]),
+            Self::ComplexShear => ("complex-shear", Holding::Bars, 0.0, &[]),
+            Self::CornerPull => ("corner-pull", Holding::Corners, 0.0, &[]),
+        };
+        Description { name, holding, degrees_from_weft, shows }
     }
 
     /// The name in files and on the command line.
@@ -155,7 +117,7 @@ impl Kind {
         self.description().name
     }
 
-    /// How the specimen is held.
+    /// The holding of the specimen.
     pub fn holding(self) -> Holding {
         self.description().holding
     }
@@ -185,14 +147,22 @@ impl Kind {
         self.holding() == Holding::Strip && !self.is_along_yarns()
     }
 
-    /// How far the test went.
+    /// The measure of how far the test went.
     pub fn extension(self) -> Extension {
-        self.description().extension
+        match self.holding() {
+            Holding::Strip | Holding::Corners => Extension::Elongation,
+            Holding::PictureFrame | Holding::Bars => Extension::ShearAngle,
+            Holding::Table => Extension::Overhang,
+        }
     }
 
-    /// What the forces of a frame are summed up by; `None` where forces and shapes are compared one by one.
+    /// The summary of a frame's forces; `None` where forces and shapes are compared one by one.
     pub fn summary(self) -> Option<Summary> {
-        self.description().summary
+        match self.holding() {
+            Holding::PictureFrame | Holding::Bars => Some(Summary::AggregatedTorque),
+            Holding::Corners => Some(Summary::StretchingForceDifference),
+            Holding::Strip | Holding::Table => None,
+        }
     }
 }
 

@@ -77,7 +77,7 @@ impl Notice {
         Self::new(Severity::Refusal, sequence, place, found, expected)
     }
 
-    /// The same notice with remedies.
+    /// Adds remedies.
     pub fn with(self, remedies: Vec<Remedy>) -> Self {
         Self { remedies, ..self }
     }

@@ -4,7 +4,7 @@
 //! k = (k of the first curve, k of the second, …)
 //! ```
 //!
-//! None at all is a simulation under known curves.
+//! An empty list simulates under known curves.
 
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::error::Result;
