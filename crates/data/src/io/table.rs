@@ -58,12 +58,13 @@ impl Table {
         }
         let records = records(path, text)?.into_iter().map(|(line, record)| (in_file(line), record));
         let mut records = records.collect::<Vec<_>>().into_iter();
+        let nameless = |line| Err(Error::input(path, line, "header", "nothing", "the names of the columns"));
         let Some((header_line, header)) = records.next() else {
-            return Err(Error::input(path, None, "header", "nothing", "the names of the columns"));
+            return nameless(None);
         };
         let mut table = Self { path: path.to_path_buf(), header_line, header, rows: records.collect() };
         table.drop_nothing();
-        Ok(table)
+        if table.header.is_empty() { nameless(Some(header_line)) } else { Ok(table) }
     }
 
     /// Drops trailing columns without name and content.

@@ -468,6 +468,10 @@ fn bytes_that_are_no_text() {
         ),
         (b"", "corners/clips.csv file: found an empty file, expected content"),
         (b"\n\n", "corners/clips.csv header: found nothing, expected the names of the columns"),
+        (
+            "\n\u{2000}".as_bytes(),
+            "corners/clips.csv:2 header: found nothing, expected the names of the columns",
+        ),
     ];
     for (bytes, expected) in cases {
         let write = |place: &Path| fs::write(place.join("corners/clips.csv"), bytes).unwrap();
