@@ -19,7 +19,7 @@ use cloth_data::io::{read_set, write_set};
 use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::judge::verdict::{Grade, of_stage};
 use cloth_fit::stage::knowledge::Knowledge;
-use cloth_fit::stage::report::Sample;
+use cloth_fit::stage::report::CurveRow;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::Component;
 use fit_cloth_tests::fault::{Change, Fault, Field};
@@ -120,7 +120,7 @@ fn end(clean: &Clean, set: &MeasurementSet) -> End {
 }
 
 /// Distance of a curve from the reference, relative to its largest stress; `None` if it is right.
-fn off(found: &[Sample], right: &[Sample]) -> Option<f64> {
+fn off(found: &[CurveRow], right: &[CurveRow]) -> Option<f64> {
     let banded = found.iter().filter_map(|sample| Some((sample, sample.band?)));
     let (mut all, mut both, mut outside, mut most) = (0, 0, 0, 0.0f64);
     let largest = right.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
@@ -138,7 +138,7 @@ fn off(found: &[Sample], right: &[Sample]) -> Option<f64> {
 }
 
 /// Stress and half band of a curve, interpolated between rows.
-fn at(samples: &[Sample], strain: f64) -> Option<(f64, f64)> {
+fn at(samples: &[CurveRow], strain: f64) -> Option<(f64, f64)> {
     let next = samples.partition_point(|sample| sample.strain < strain).max(1);
     let (a, b) = (samples.get(next - 1)?, samples.get(next)?);
     let [low, high] = b.band?;

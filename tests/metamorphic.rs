@@ -13,7 +13,7 @@ use cloth_data::frame::{Kind, MeasurementSet, Sequence};
 use cloth_data::io::read_set;
 use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::stage::knowledge::Knowledge;
-use cloth_fit::stage::report::Sample;
+use cloth_fit::stage::report::CurveRow;
 use cloth_fit::stage::stretch::fit as fit_stretch;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Model};
@@ -87,7 +87,7 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
 
 /// Distance of two curves relative to their reach or the largest stress, and the relative difference of their bands
 /// where these are widest.
-fn apart(before: &[Sample], after: &[Sample], [strain, stress, band]: [f64; 3]) -> (f64, f64) {
+fn apart(before: &[CurveRow], after: &[CurveRow], [strain, stress, band]: [f64; 3]) -> (f64, f64) {
     let largest = before.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
     let widest = before.iter().map(half).fold(0.0, f64::max);
     let reach = before[before.len() - 1].strain;
@@ -103,7 +103,7 @@ fn apart(before: &[Sample], after: &[Sample], [strain, stress, band]: [f64; 3]) 
 }
 
 /// Half width of a band.
-fn half(sample: &Sample) -> f64 {
+fn half(sample: &CurveRow) -> f64 {
     sample.band.map_or(0.0, |[low, high]| 0.5 * (high - low))
 }
 

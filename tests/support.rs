@@ -18,7 +18,7 @@ pub mod random_curve;
 pub mod strip;
 
 use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
-use cloth_fit::stage::report::Sample;
+use cloth_fit::stage::report::CurveRow;
 use cloth_sim::material::Model;
 use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::{Isometry3, Vector3};
@@ -112,14 +112,14 @@ fn cord(clip: usize, force: Vector3<f64>) -> Cord {
 }
 
 /// Relative L2 error of the stress over the visited range.
-pub fn stress_error(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
-    let square = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(|sample| f(sample).powi(2)).sum::<f64>();
+pub fn stress_error(samples: &[CurveRow], truth: &dyn Fn(f64) -> f64) -> f64 {
+    let square = |f: &dyn Fn(&CurveRow) -> f64| samples.iter().map(|sample| f(sample).powi(2)).sum::<f64>();
     (square(&|s| s.stress - truth(s.strain)) / square(&|s| truth(s.strain))).sqrt()
 }
 
 /// Share of the rows whose 95 % band contains the truth.
-pub fn coverage(samples: &[Sample], truth: &dyn Fn(f64) -> f64) -> f64 {
-    let inside = |sample: &&Sample| {
+pub fn coverage(samples: &[CurveRow], truth: &dyn Fn(f64) -> f64) -> f64 {
+    let inside = |sample: &&CurveRow| {
         let stress = truth(sample.strain);
         // Both are zero at zero strain, up to rounding.
         let slack = 1e-12 * (1.0 + stress.abs());

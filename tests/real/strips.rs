@@ -16,7 +16,7 @@
 
 use cloth_data::frame::{MeasurementSet, Sequence};
 use cloth_data::io::read_set;
-use cloth_data::strip::{Added, Direction, Extension, Sample, StripTest, add_to_set, read_strip};
+use cloth_data::strip::{Added, Direction, Extension, FabricFields, StripTest, add_to_set, read_strip};
 use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Watch, stretch};
 use cloth_sim::material::{Component, Model};
@@ -40,9 +40,9 @@ fn describe(fabric: &str) -> Value {
     serde_json::from_str(&read_to_string(data(fabric).join("fabric.json")).expect(SHAPE)).expect(SHAPE)
 }
 
-fn sample(fabric: &str) -> Sample {
+fn sample(fabric: &str) -> FabricFields {
     let density = describe(fabric)["area_density_kg_m2"].as_f64();
-    Sample { name: Some(fabric.into()), areal_density: density, thickness: None }
+    FabricFields { name: Some(fabric.into()), areal_density: density, thickness: None }
 }
 
 pub(crate) fn import(fabric: &str, strip: &str, direction: Direction) -> Sequence {

@@ -15,7 +15,7 @@
 //! compared with the first row); drop within 1 % on 48 elements along the height.
 
 use cloth_data::curve_file::CurveFile;
-use cloth_data::strip::{Extension, ForceTable, Measure, read_force_table};
+use cloth_data::strip::{Conversion, Extension, ForceTable, read_force_table};
 use cloth_fit::material::check::context;
 use cloth_sim::curve::soundness::check;
 use cloth_sim::equilibrium::{Settings, Solver, Tolerance};
@@ -65,10 +65,10 @@ fn the_table_of_forces_becomes_the_published_stresses() {
     let source = data("gnatv_wool/raw_force_elongation_recovered.csv");
     let all = rows("gnatv_wool/raw_force_elongation_recovered.csv");
     // The shear table of the source is reduced by a tension of 0.1 N/m across the bars.
-    for (mode, width, measure) in [
-        ("weft", 0.2, Measure::Green),
-        ("warp", 0.05, Measure::Green),
-        ("shear", 0.2, Measure::Shear { tension: 0.1 }),
+    for (mode, width, conversion) in [
+        ("weft", 0.2, Conversion::Green),
+        ("warp", 0.05, Conversion::Green),
+        ("shear", 0.2, Conversion::Shear { tension: 0.1 }),
     ] {
         let first = all.iter().position(|row| row[0] == mode).unwrap();
         let of: Vec<_> = all.iter().filter(|row| row[0] == mode).collect();
@@ -78,7 +78,7 @@ fn the_table_of_forces_becomes_the_published_stresses() {
             extension: Extension::Strain("engineering_elongation_or_shear:1".into()),
             force: "force_N".into(),
             rows: Some(first + 1..=first + of.len()),
-            measure,
+            conversion,
         };
         let found = read_force_table(&source, &test).unwrap();
         assert_eq!((found.strains.len(), of.len()), (29, 29));

@@ -184,7 +184,7 @@ impl CurveFile {
         Ok(curve)
     }
 
-    /// The same rows and columns with the stresses of another curve; a band keeps its width around the stress.
+    /// Copies rows and columns with the stresses of another curve; a band keeps its width around the stress.
     ///
     /// * `curve` — over the model's strains, as returned by [`CurveFile::curve`]
     ///

@@ -1,4 +1,4 @@
-//! What was measured: a fabric sample, its sequences, and their frames.
+//! Measurements: a fabric sample, its sequences, and their frames.
 //!
 //! Plain data in SI units. [`io`](crate::io) is its only reader and writer.
 
@@ -31,7 +31,7 @@ pub struct Fabric {
     /// Thickness, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thickness_m: Option<f64>,
-    /// Where the sample or the data come from.
+    /// Origin of the sample or the data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     /// Anything else.
@@ -126,7 +126,7 @@ pub struct Clip {
     pub vertices: Vec<usize>,
 }
 
-/// Whether the specimen was being loaded.
+/// Direction in which the load changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
@@ -162,7 +162,7 @@ pub struct Cord {
     pub clip: usize,
     /// Force that the cord exerts on the clip, N.
     pub force: Vector3<f64>,
-    /// Where it acts, m; `None` = the clip's centre.
+    /// Point of action, m; `None` = the clip's centre.
     pub point: Option<Vector3<f64>>,
 }
 

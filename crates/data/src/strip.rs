@@ -26,8 +26,8 @@ mod settings;
 mod tests;
 
 pub use column::Column;
-pub use force_table::{ForceTable, Measure, read_force_table};
-pub use set::{Added, Sample, add_to_set};
+pub use force_table::{Conversion, ForceTable, read_force_table};
+pub use set::{Added, FabricFields, add_to_set};
 pub use settings::{Direction, Extension, FreeLength, StripTest};
 
 use crate::branch::{numbered, phases};

@@ -14,7 +14,7 @@ use crate::command::validate::{self, ValidateOptions};
 use crate::failure::Failure;
 use crate::options::FitFlags;
 use crate::outcome::Outcome;
-use crate::telling::Telling;
+use crate::printing::Printing;
 use clap::{Parser, Subcommand};
 use std::io::Write;
 
@@ -27,7 +27,7 @@ pub struct Options {
     pub command: Command,
     /// Output flags.
     #[command(flatten)]
-    pub telling: Telling,
+    pub printing: Printing,
 }
 
 /// The commands.
@@ -72,18 +72,18 @@ pub enum Command {
 /// The error that stopped the command.
 pub fn run(options: &Options, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &options.command {
-        Command::Import(import) => import::run(import, options.telling, output),
-        Command::Rig(rig) => rig::run(rig, options.telling, output),
-        Command::Stretch(flags) => fit::run(Goal::Stretch, flags, options.telling, output),
-        Command::Shear(flags) => fit::run(Goal::Shear, flags, options.telling, output),
-        Command::Bend(flags) => fit::run(Goal::Bend, flags, options.telling, output),
-        Command::Fit(flags) => fit::run(Goal::All, flags, options.telling, output),
-        Command::Check(check) => check::run(check, options.telling, output),
-        Command::Curve(curve) => curve::run(curve, options.telling, output),
-        Command::Compare(compare) => compare::run(compare, options.telling, output),
-        Command::Simulate(simulate) => simulate::run(simulate, options.telling, output),
-        Command::Report(report) => report::run(report, options.telling, output),
-        Command::Study(study) => study::run(study, options.telling, output),
-        Command::Validate(validate) => validate::run(validate, options.telling, output),
+        Command::Import(import) => import::run(import, options.printing, output),
+        Command::Rig(rig) => rig::run(rig, options.printing, output),
+        Command::Stretch(flags) => fit::run(Goal::Stretch, flags, options.printing, output),
+        Command::Shear(flags) => fit::run(Goal::Shear, flags, options.printing, output),
+        Command::Bend(flags) => fit::run(Goal::Bend, flags, options.printing, output),
+        Command::Fit(flags) => fit::run(Goal::All, flags, options.printing, output),
+        Command::Check(check) => check::run(check, options.printing, output),
+        Command::Curve(curve) => curve::run(curve, options.printing, output),
+        Command::Compare(compare) => compare::run(compare, options.printing, output),
+        Command::Simulate(simulate) => simulate::run(simulate, options.printing, output),
+        Command::Report(report) => report::run(report, options.printing, output),
+        Command::Study(study) => study::run(study, options.printing, output),
+        Command::Validate(validate) => validate::run(validate, options.printing, output),
     }
 }

@@ -16,7 +16,7 @@
 //! | [`options`] | flags shared by several commands |
 //! | [`file_curve`] | the curves given to `check` and `curve` |
 //! | [`text`], [`plot`], [`page`] | results as text, figures and an HTML page |
-//! | [`telling`], [`output`], [`progress`] | standard output and error; atomic output; the progress line |
+//! | [`printing`], [`output`], [`progress`] | standard output and error; atomic output; the progress line |
 //! | [`outcome`], [`failure`] | the outcome of a completed command; the error that stopped one |
 
 pub mod cli;
@@ -29,9 +29,9 @@ pub mod outcome;
 pub mod output;
 pub mod page;
 pub mod plot;
+pub mod printing;
 pub mod progress;
 mod shown;
-pub mod telling;
 pub mod text;
 
 use clap::Parser;

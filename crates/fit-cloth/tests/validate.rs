@@ -79,7 +79,7 @@ fn bias_strip(folder: &Path, name: &str, [length, width]: [f64; 2], forces: &[f6
     set
 }
 
-/// The same for a cloth of stiff yarns and constant shear stiffness; each strip is simulated on its own grid.
+/// As above for a cloth of stiff yarns and constant shear stiffness; each strip is simulated on its own grid.
 fn cloth_on_the_bias(folder: &Path, name: &str, size: [f64; 2]) -> PathBuf {
     let set = read_set(&bias_strip(folder, name, size, &[1.0; 8])).unwrap();
     let stiffnesses =

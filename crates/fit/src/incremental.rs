@@ -50,7 +50,7 @@ impl Stage {
     }
 }
 
-/// What a fit of several stages found.
+/// Result of a fit of several stages.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitReport {
@@ -64,14 +64,14 @@ pub struct FitReport {
     pub failures: Vec<FailedStage>,
     /// Contradictions within the measurements.
     pub notices: Vec<Notice>,
-    /// What is known now: what was given, and what was observed.
+    /// All known curves: those given and those observed.
     pub knowledge: Knowledge,
 }
 
 /// A stage that came to nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailedStage {
-    /// What it was to fit.
+    /// Component that it was to fit.
     pub components: Vec<Component>,
     /// First or second pass over them; where a second failed the first still counts.
     pub pass: usize,
@@ -108,7 +108,7 @@ impl FitReport {
         self.stages.iter().filter(last)
     }
 
-    /// How each sequence was met in the end, by the stage that is about it.
+    /// Final residuals of each sequence, from the stage fitted to it.
     pub fn sequences(&self) -> Vec<(&StageReport, &SequenceReport)> {
         let mut last: Vec<(&StageReport, &SequenceReport)> = Vec::new();
         // The diagonal's stage, which comes later, only borrows those of weft and warp.
@@ -150,14 +150,14 @@ impl FitReport {
 pub struct Finished {
     /// The stage.
     pub stage: StageReport,
-    /// What was given, and what this stage and those before it have observed.
+    /// Curves given, and those observed by this stage and the ones before it.
     pub knowledge: Knowledge,
 }
 
 /// Keeps a stage.
 pub type Keep<'a> = dyn FnMut(&Finished) -> Result<()> + 'a;
 
-/// What keeps the stages of a fit, should it be stopped.
+/// Keeps the finished stages of a fit that may be interrupted.
 pub struct Memory<'a> {
     /// Those of a former run on the same set with the same settings; of other models and variants too.
     pub finished: Vec<Finished>,
@@ -196,8 +196,8 @@ pub fn fit(
     resume(set, wanted, known, settings, &mut Memory::default(), watch)
 }
 
-/// The same, but stages that are finished are not fitted again: the report is that of a run that was never stopped, to the
-/// bit. A stage that failed is tried again, and fails again.
+/// As [`fit`], except that finished stages are taken from memory; the report equals that of an uninterrupted run to the bit.
+/// A failed stage is tried again.
 ///
 /// # Errors
 /// As [`fit`], and those of [`Memory::keep`].
@@ -262,7 +262,7 @@ pub fn resume(
     }
 }
 
-/// What is fitted, in order.
+/// Stages, in order.
 fn plans(wanted: &[Stage], variant: Variant) -> Vec<Plan> {
     let pair = |a, b| if variant.is_isotropic() { vec![vec![a, b]] } else { vec![vec![a], vec![b]] };
     let stretches = pair(Component::StretchWeft, Component::StretchWarp);

@@ -65,7 +65,7 @@ impl Material {
         Ok(Self { name, areal_density, model, compression, curves })
     }
 
-    /// The same material with another rule for compression.
+    /// Copies the material with another rule for compression.
     ///
     /// # Errors
     /// None, if the material's curves are valid.

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 pub struct Droop {
     /// Depth of the lowest point below the mean of the held nodes, m.
     pub depth_m: f64,
-    /// The same depth for the sheet as laid out, m.
+    /// The depth of the sheet as laid out, m.
     pub flat_depth_m: f64,
     /// `depth_m`/`flat_depth_m` − 1; absent if the sheet was laid out level.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -189,7 +189,7 @@ impl StiffnessCurve {
         self.strains.is_empty()
     }
 
-    /// The same curve with other stiffnesses.
+    /// Copies the curve with other stiffnesses.
     ///
     /// # Errors
     /// Those of [`StiffnessCurve::new`].

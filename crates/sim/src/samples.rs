@@ -165,7 +165,7 @@ pub fn square(nodes: usize, diagonals: Diagonals) -> Result<Mesh> {
     Grid { columns: nodes, rows: nodes, width: SIDE, height: SIDE, diagonals }.mesh()
 }
 
-/// The same sheet cut at an angle (rad) to weft.
+/// Sheet cut at an angle (rad) to weft.
 pub fn cut_on_the_bias(mut mesh: Mesh, angle: f64) -> Mesh {
     let rotation = nalgebra::Rotation2::new(angle);
     mesh.material.iter_mut().for_each(|m| *m = rotation * *m);

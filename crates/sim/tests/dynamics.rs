@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, Vector2, Vector3};
 const DIRECT: Integrator =
     Integrator::ImplicitEuler { newton: Newton::Converged { tolerance: 1e-6 }, linear: LinearSolver::Direct };
 
-/// The same integrator to a tolerance of 1e-10.
+/// Settings of the integrator with a tolerance of 1e-10.
 fn exact(linear: LinearSolver) -> Integrator {
     Integrator::ImplicitEuler { newton: Newton::Converged { tolerance: 1e-10 }, linear }
 }

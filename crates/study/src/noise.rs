@@ -75,7 +75,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
 fn floor(stage: &StageReport) -> Option<f64> {
     let samples = &stage.curve.samples;
     let largest = samples.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);
-    let square = |sample: &cloth_fit::stage::report::Sample| {
+    let square = |sample: &cloth_fit::stage::report::CurveRow| {
         sample.band.map(|[_, high]| ((high - sample.stress) / BAND).powi(2))
     };
     let sum = samples.iter().map(square).sum::<Option<f64>>()?;

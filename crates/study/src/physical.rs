@@ -38,7 +38,7 @@ impl Reference {
         distance(&loads(stage), |place| self.load(stage.components[0], place))
     }
 
-    /// The same curves in another model's strains. A bending curve becomes a single stiffness for springs, which
+    /// Converts curves to another model's strains. A bending curve becomes a single stiffness for springs, which
     /// matches the moment at half of the curve's range; matching all moments would need a curve that falls as 1/κ².
     ///
     /// # Errors

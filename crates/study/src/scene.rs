@@ -66,20 +66,20 @@ impl TestScene {
         Ok(Self { name: kind.to_string(), set: rig.measure(fabric)?, plan })
     }
 
-    /// The same scene with another gravity, m/s².
+    /// Copies the scene with another gravity, m/s².
     pub(crate) fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
         self.set.sequences.iter_mut().for_each(|sequence| sequence.gravity = gravity);
         self
     }
 
-    /// The same scene without measured shapes; it starts interpolated between its clips.
+    /// Copies the scene without measured shapes; it starts interpolated between its clips.
     pub(crate) fn without_shapes(mut self) -> Self {
         let frames = self.set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames);
         frames.for_each(|frame| frame.positions = None);
         self
     }
 
-    /// The same scene under another name.
+    /// Copies the scene under another name.
     pub(crate) fn called(mut self, name: &str) -> Self {
         self.name = name.into();
         self

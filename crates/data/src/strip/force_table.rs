@@ -26,9 +26,9 @@ use cloth_sim::strain_measure::StrainMeasure;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Strain and stress measure of the result.
+/// Conversion of forces and lengths to strain and stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Measure {
+pub enum Conversion {
     /// Green strain, second Piola–Kirchhoff stress.
     Green,
     /// Engineering strain, nominal stress.
@@ -53,8 +53,8 @@ pub struct ForceTable {
     pub force: Column,
     /// Rows to use, both ends included; the first below the header is 1, `usize::MAX` the last. Default: all.
     pub rows: Option<RangeInclusive<usize>>,
-    /// Strain and stress measure.
-    pub measure: Measure,
+    /// Strain and stress to compute.
+    pub conversion: Conversion,
 }
 
 /// Reads a table of force over elongation as one of stress over strain.
@@ -79,7 +79,7 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
         let elongation = test.elongation(extension.value(&table, row)?);
         let nominal = force.value(&table, row)? / test.width;
         let stretch = 1.0 + elongation;
-        if !matches!(test.measure, Measure::Shear { .. }) && !SEPARATION.contains(&stretch) {
+        if !matches!(test.conversion, Conversion::Shear { .. }) && !SEPARATION.contains(&stretch) {
             let expected = "0.5 to 10 (another unit, or another of separation, displacement and strain?)";
             return Err(table.invalid(
                 row,
@@ -88,11 +88,11 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
                 expected,
             ));
         }
-        let (strain, stress) = match test.measure {
+        let (strain, stress) = match test.conversion {
             // (λ² − 1)/2 without cancellation.
-            Measure::Green => (elongation * (1.0 + 0.5 * elongation), nominal / stretch),
-            Measure::Engineering => (elongation, nominal),
-            Measure::Shear { tension } => (elongation, nominal - tension * elongation),
+            Conversion::Green => (elongation * (1.0 + 0.5 * elongation), nominal / stretch),
+            Conversion::Engineering => (elongation, nominal),
+            Conversion::Shear { tension } => (elongation, nominal - tension * elongation),
         };
         if !stress.is_finite() {
             let found = format!("{} N on {} m", force.value(&table, row)?, test.width);
@@ -107,10 +107,10 @@ pub fn read_force_table(path: &Path, test: &ForceTable) -> Result<CurveFile> {
         stresses.insert(0, 0.0);
         lines.insert(0, lines[0]);
     }
-    let measure = match test.measure {
-        Measure::Green => StrainMeasure::Green,
-        Measure::Engineering => StrainMeasure::Engineering,
-        Measure::Shear { .. } => StrainMeasure::Shear,
+    let measure = match test.conversion {
+        Conversion::Green => StrainMeasure::Green,
+        Conversion::Engineering => StrainMeasure::Engineering,
+        Conversion::Shear { .. } => StrainMeasure::Shear,
     };
     CurveFile::new(Some(measure), strains, stresses, path, lines)
 }
@@ -129,7 +129,7 @@ impl ForceTable {
             let Some(value) = value else { continue };
             check_length(value, LARGEST).or_else(|expected| refuse(field, value.to_string(), &expected))?;
         }
-        if let Measure::Shear { tension } = self.measure
+        if let Conversion::Shear { tension } = self.conversion
             && !(tension >= 0.0 && tension.is_finite())
         {
             return refuse("tension", tension.to_string(), "0 or more, in N/m");
@@ -162,14 +162,21 @@ mod tests {
         read_force_table(&path, test)
     }
 
-    fn test(extension: Extension, measure: Measure) -> ForceTable {
-        ForceTable { width: 0.05, gauge: Some(0.2), extension, force: "load:N".into(), rows: None, measure }
+    fn test(extension: Extension, conversion: Conversion) -> ForceTable {
+        ForceTable {
+            width: 0.05,
+            gauge: Some(0.2),
+            extension,
+            force: "load:N".into(),
+            rows: None,
+            conversion,
+        }
     }
 
     #[test]
     fn a_table_becomes_stress_over_the_strain_asked_for() {
         let table = "travel_mm,load\n0,0\n20,10\n40,30\n";
-        let green = test(Extension::Displacement("travel_mm".into()), Measure::Green);
+        let green = test(Extension::Displacement("travel_mm".into()), Conversion::Green);
         let found = read(table, &green).unwrap();
         let near = |found: &[f64], expected: &[f64]| {
             found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
@@ -177,14 +184,14 @@ mod tests {
         assert!(near(&found.strains, &[0.0, 0.105, 0.22]));
         assert!(near(&found.stresses, &[0.0, 200.0 / 1.1, 600.0 / 1.2]));
         let engineering =
-            read(table, &ForceTable { measure: Measure::Engineering, ..green.clone() }).unwrap();
+            read(table, &ForceTable { conversion: Conversion::Engineering, ..green.clone() }).unwrap();
         assert!(
             near(&engineering.strains, &[0.0, 0.1, 0.2]) && near(&engineering.stresses, &[0.0, 200.0, 600.0])
         );
-        let shear = ForceTable { measure: Measure::Shear { tension: 100.0 }, ..green.clone() };
+        let shear = ForceTable { conversion: Conversion::Shear { tension: 100.0 }, ..green.clone() };
         assert!(near(&read(table, &shear).unwrap().stresses, &[0.0, 190.0, 580.0]));
         // The clamp distance, without the rest state.
-        let separation = test(Extension::Separation("apart:m".into()), Measure::Green);
+        let separation = test(Extension::Separation("apart:m".into()), Conversion::Green);
         let found = read("apart,load\n0.22,10\n0.24,30\n", &separation).unwrap();
         assert!(near(&found.strains, &[0.0, 0.105, 0.22]) && found.stresses[0] == 0.0);
         assert_eq!(
@@ -197,14 +204,14 @@ mod tests {
         let last: Vec<f64> = last.unwrap();
         assert!(near(&last[2..], &[0.2, 600.0]), "{last:?}");
         let strain =
-            ForceTable { gauge: None, ..test(Extension::Strain("e:%".into()), Measure::Engineering) };
+            ForceTable { gauge: None, ..test(Extension::Strain("e:%".into()), Conversion::Engineering) };
         let some = ForceTable { rows: Some(1..=2), ..strain };
         assert!(near(&read("e,load\n0,0\n10,10\n5,1\n", &some).unwrap().strains, &[0.0, 0.1]));
     }
 
     #[test]
     fn what_is_wrong_is_named_by_its_line() {
-        let green = test(Extension::Displacement("travel_mm".into()), Measure::Green);
+        let green = test(Extension::Displacement("travel_mm".into()), Conversion::Green);
         for (rows, words) in [
             ("0,0\n20,10\n10,5", ":4 green_strain: found"),
             ("0,0\n5000,10", ":3 travel_mm: found 26 times the gauge length"),
@@ -215,13 +222,13 @@ mod tests {
             assert!(error.contains(words), "{error}");
         }
         // A column name may contain anything; the message stays on one line.
-        let named = test(Extension::Displacement("a\u{14}b_mm".into()), Measure::Green);
+        let named = test(Extension::Displacement("a\u{14}b_mm".into()), Conversion::Green);
         let error = read("a\u{14}b_mm,load\n5000,1\n", &named).unwrap_err().to_string();
         assert!(error.contains(":2 a\\u{14}b_mm: found 26 times"), "{error}");
         for wrong in [
             ForceTable { gauge: None, ..green.clone() },
             ForceTable { width: 50.0, ..green.clone() },
-            ForceTable { measure: Measure::Shear { tension: -1.0 }, ..green.clone() },
+            ForceTable { conversion: Conversion::Shear { tension: -1.0 }, ..green.clone() },
             ForceTable { rows: Some(2..=9), ..green },
         ] {
             assert!(read("travel_mm,load\n0,0\n20,10\n", &wrong).is_err(), "{wrong:?}");

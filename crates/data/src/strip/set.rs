@@ -9,9 +9,9 @@ use std::path::Path;
 /// Relative difference below which two numbers count as equal.
 const SAME: f64 = 1e-6;
 
-/// Sample data. A new set requires name and areal density; for an existing set the given values must agree.
+/// Fields of `fabric.toml`. A new set requires name and areal density; for an existing set the given values must agree.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sample {
+pub struct FabricFields {
     /// Name of the fabric.
     pub name: Option<String>,
     /// Mass per area, kg/m².
@@ -36,10 +36,15 @@ pub enum Added {
 /// * `replace` — allows replacing a sequence of the same name, including all contents of its folder
 ///
 /// # Errors
-/// Sample data that are insufficient for a new set, or contradict an existing one; an existing sequence of that name;
+/// Fields that are insufficient for a new set, or contradict an existing one; an existing sequence of that name;
 /// a folder that holds something other than a set; a sequence that does not read back. Nothing is written in these
 /// cases. A failed system call.
-pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, replace: bool) -> Result<Added> {
+pub fn add_to_set(
+    set_folder: &Path,
+    sample: &FabricFields,
+    sequence: &Sequence,
+    replace: bool,
+) -> Result<Added> {
     let fabric_file = set_folder.join("fabric.toml");
     if set_folder.exists() && !set_folder.is_dir() {
         return Err(Error::input(set_folder, None, "folder", "something else", "a set's folder, or nothing"));
@@ -72,7 +77,7 @@ pub fn add_to_set(set_folder: &Path, sample: &Sample, sequence: &Sequence, repla
 }
 
 /// The sample of a new set, with the extents of the specimen along the yarns.
-fn new_fabric(path: &Path, sample: &Sample, sequence: &Sequence) -> Result<Fabric> {
+fn new_fabric(path: &Path, sample: &FabricFields, sequence: &Sequence) -> Result<Fabric> {
     let missing = |field: &str, expected: &str| {
         Error::input(
             path,
@@ -100,7 +105,7 @@ fn new_fabric(path: &Path, sample: &Sample, sequence: &Sequence) -> Result<Fabri
 }
 
 /// Refuses a sequence of another fabric.
-fn check_agreement(path: &Path, sample: &Sample, fabric: &Fabric) -> Result<()> {
+fn check_agreement(path: &Path, sample: &FabricFields, fabric: &Fabric) -> Result<()> {
     let refuse = |field: &str, found: String, given: String| {
         Err(Error::input(path, None, field, found, format!("{given}, the value given (or give none)")))
     };

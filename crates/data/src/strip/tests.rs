@@ -428,28 +428,28 @@ fn bad_settings_are_refused() {
 fn a_set_is_made_grows_and_must_agree() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("knit");
-    let known = Sample { name: Some("knit".into()), areal_density: Some(0.3), thickness: Some(2e-4) };
+    let known = FabricFields { name: Some("knit".into()), areal_density: Some(0.3), thickness: Some(2e-4) };
     let sequence = |name: &str| read(&plain(), &StripTest { name: name.into(), ..test() }).unwrap();
-    let add = |sample: &Sample, name: &str, replace| {
+    let add = |sample: &FabricFields, name: &str, replace| {
         add_to_set(&place, sample, &sequence(name), replace)
             .map_err(|error| error.to_string().replace(folder.path().to_str().unwrap(), ""))
     };
-    let refused = |sample: &Sample, name: &str, expected: &str| {
+    let refused = |sample: &FabricFields, name: &str, expected: &str| {
         assert_eq!(add(sample, name, false).unwrap_err(), expected);
     };
     refused(
-        &Sample { name: None, ..known.clone() },
+        &FabricFields { name: None, ..known.clone() },
         "a",
         "/knit/fabric.toml name: found no such file and no value given, expected the fabric's name, for a new set",
     );
     refused(
-        &Sample { areal_density: None, ..known.clone() },
+        &FabricFields { areal_density: None, ..known.clone() },
         "a",
         "/knit/fabric.toml areal_density_kg_m2: found no such file and no value given, \
          expected the mass per area, for a new set",
     );
     refused(
-        &Sample { areal_density: Some(300.0), ..known.clone() },
+        &FabricFields { areal_density: Some(300.0), ..known.clone() },
         "a",
         "/knit/fabric.toml:4 areal_density_kg_m2: found 300, expected kilograms per square metre, above 0 and at \
          most 10 (convert g/m² to kg/m²: divide by 1000)",
@@ -462,7 +462,7 @@ fn a_set_is_made_grows_and_must_agree() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 
     assert_eq!(add(&known, "a", false), Ok(Added::NewSet));
-    assert_eq!(add(&Sample::default(), "b", false), Ok(Added::NewSequence));
+    assert_eq!(add(&FabricFields::default(), "b", false), Ok(Added::NewSequence));
     assert_eq!(add(&known, "b", true), Ok(Added::Replaced));
     let set = read_set(&place).unwrap();
     assert_eq!(set.sequences, [sequence("a"), sequence("b")]);
@@ -475,12 +475,12 @@ fn a_set_is_made_grows_and_must_agree() {
         "/knit/a sequence: found one of that name, expected a new name, or leave to replace it",
     );
     refused(
-        &Sample { areal_density: Some(0.31), ..known.clone() },
+        &FabricFields { areal_density: Some(0.31), ..known.clone() },
         "c",
         "/knit/fabric.toml areal_density_kg_m2: found 0.3, expected 0.31, the value given (or give none)",
     );
     refused(
-        &Sample { name: Some("denim".into()), ..known.clone() },
+        &FabricFields { name: Some("denim".into()), ..known.clone() },
         "c",
         "/knit/fabric.toml name: found knit, expected denim, the value given (or give none)",
     );

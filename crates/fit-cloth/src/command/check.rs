@@ -5,7 +5,7 @@ use crate::file_curve::{FileCurve, Source, read};
 use crate::options::Reading;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::telling::{Telling, tell};
+use crate::printing::{Printing, print_result};
 use crate::text;
 use clap::Args;
 use cloth_data::error::Error;
@@ -43,7 +43,7 @@ pub struct CheckOptions {
 ///
 /// # Errors
 /// A bad file; a curve that cannot be repaired; I/O errors.
-pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &CheckOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (source, subjects) = read(&options.file, options.reading.component(), options.reading.model())?;
     let repairs = match &options.repair {
         Some(out) => Some(write_repairs(options, out, source, &subjects)?),
@@ -54,7 +54,7 @@ pub fn run(options: &CheckOptions, telling: Telling, output: &mut impl Write) ->
     let words =
         text::check(&options.file, &subjects, &findings, repairs.as_deref(), options.repair.as_deref());
     let json = json(options, &subjects, &findings, repairs.as_deref());
-    tell(telling, output, &words, &json)?;
+    print_result(printing, output, &words, &json)?;
     Ok(if sound { Outcome::Done } else { Outcome::Defective })
 }
 

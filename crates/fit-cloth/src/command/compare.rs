@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::options::{CurveFlags, SetFlags};
 use crate::outcome::Outcome;
 use crate::page::{Fit, Frames, Page};
+use crate::printing::{Printing, print_result, warn};
 use crate::progress::Progress;
-use crate::telling::{Telling, tell, warn};
 use crate::text;
 use clap::Args;
 use cloth_data::store::write_file;
@@ -56,7 +56,11 @@ struct Shown {
 ///
 /// # Errors
 /// Bad input; a set that no model can fit; an output folder that is not a previous result; I/O errors.
-pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(
+    options: &CompareOptions,
+    printing: Printing,
+    output: &mut impl Write,
+) -> Result<Outcome, Failure> {
     let (set, out) = options.on.open("-compare")?;
     let kinds: Vec<_> = Stage::ALL.iter().flat_map(|stage| stage.kinds()).collect();
     if !has_any(&set, &kinds) {
@@ -66,7 +70,7 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
     let key =
         (program(), "compare", options.leave_one_out, options.no_report, format!("{contestants:?}"), &set);
     let name = |entry: &Shown| format!("{}, {}", entry.row.model, entry.row.variant);
-    let mut finished: Vec<Shown> = recalled(out.recall(&key)?, telling, name);
+    let mut finished: Vec<Shown> = recalled(out.recall(&key)?, printing, name);
     let mut refused = None;
     for settings in contestants {
         if finished
@@ -76,7 +80,7 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
             continue;
         }
         let name = format!("{}, {}", settings.model, settings.variant);
-        let progress = Progress::new(&name, !telling.quiet);
+        let progress = Progress::new(&name, !printing.quiet);
         let entry = compare::run(&set, &settings, options.leave_one_out, &mut progress.watch());
         progress.finish();
         finished.push(match entry {
@@ -87,7 +91,7 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
                 shown
             }
             Err(error) => {
-                warn(telling, &format!("{name}: {error}"));
+                warn(printing, &format!("{name}: {error}"));
                 let row = Row::failed(&settings, &error);
                 refused.get_or_insert(error);
                 Shown { row, fit: None }
@@ -112,6 +116,6 @@ pub fn run(options: &CompareOptions, telling: Telling, output: &mut impl Write) 
         }
     })?;
     let text = format!("{}\nWritten to {}", text::comparison(&comparison), out.path().display());
-    tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
+    print_result(printing, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
     Ok(if comparison.rows.iter().all(|row| row.converged) { Outcome::Done } else { Outcome::NotConverged })
 }

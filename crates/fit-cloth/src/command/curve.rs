@@ -6,7 +6,7 @@ pub mod scale;
 
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::telling::Telling;
+use crate::printing::Printing;
 use clap::{Args, Subcommand};
 use extend::ExtendOptions;
 use scale::ScaleOptions;
@@ -41,9 +41,9 @@ pub enum CurveEdit {
 ///
 /// # Errors
 /// A bad file or option; I/O errors.
-pub fn run(curve: &Curve, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(curve: &Curve, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &curve.edit {
-        CurveEdit::Scale(options) => scale::run(options, telling, output),
-        CurveEdit::Extend(options) => extend::run(options, telling, output),
+        CurveEdit::Scale(options) => scale::run(options, printing, output),
+        CurveEdit::Extend(options) => extend::run(options, printing, output),
     }
 }

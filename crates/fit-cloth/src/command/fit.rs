@@ -9,8 +9,8 @@ use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::page::{Fit, Frames, Page};
 use crate::plot::write_plots;
+use crate::printing::{Printing, warn, warn_of_defects};
 use crate::progress::Progress;
-use crate::telling::{Telling, warn, warn_of_defects};
 use crate::text;
 use cloth_data::error::Error;
 use cloth_data::frame::MeasurementSet;
@@ -40,7 +40,7 @@ struct Fitted {
 pub fn run(
     goal: Goal,
     flags: &FitFlags,
-    telling: Telling,
+    printing: Printing,
     output: &mut impl Write,
 ) -> Result<Outcome, Failure> {
     let (set, out) = flags.on.open("")?;
@@ -55,12 +55,12 @@ pub fn run(
     }
     let models = flags.model.models();
     let given = flags.known.as_deref().map(|path| read_known(path, out.path(), flags)).transpose()?;
-    let finished = recall(goal, &set, flags, given.as_ref(), &out, telling)?;
+    let finished = recall(goal, &set, flags, given.as_ref(), &out, printing)?;
     let (mut results, mut failures) = (Vec::new(), Vec::new());
     for &model in &models {
         let finished = finished.clone();
         let mut memory = Memory { finished, keep: Box::new(|finished| out.keep(finished)) };
-        match fit_model(goal, &set, flags, model, given.as_ref(), &mut memory, telling) {
+        match fit_model(goal, &set, flags, model, given.as_ref(), &mut memory, printing) {
             Ok(fitted) => results.push(fitted),
             // A full disk affects every model.
             Err(failure) if failure.exit_code() == 1 => return Err(failure),
@@ -73,32 +73,32 @@ pub fn run(
     write(&out, &set, models.len() > 1, !flags.no_report, &results)?;
     // Everything is on disk before the first output: a reader that stops early must not cost the result.
     for (model, failure) in &failures {
-        warn(telling, &format!("{model} has no result: {}", failure.in_words()));
+        warn(printing, &format!("{model} has no result: {}", failure.in_words()));
     }
     // Notices about the measurements are the same for every model.
     for notice in results.iter().take(1).flat_map(|fitted| &fitted.report.notices) {
-        warn(telling, &text::notice(notice));
+        warn(printing, &text::notice(notice));
     }
     for Fitted { report, material } in &results {
         // Given curves are checked, too.
-        warn_of_defects(telling, &report.model.to_string(), &check_material(material)?);
+        warn_of_defects(printing, &report.model.to_string(), &check_material(material)?);
         // The reason for refusing a sequence has been printed already.
         let is_said = |failure: &&FailedStage| report.notices.iter().any(|n| n.to_string() == failure.reason);
         for failure in report.failures.iter().filter(|failure| !is_said(failure)) {
-            warn(telling, &format!("{}: {}", report.model, failure.in_words()));
+            warn(printing, &format!("{}: {}", report.model, failure.in_words()));
         }
         let has_failed =
             |component: &Component| report.failures.iter().any(|f| f.components.contains(component));
         let others = goal.components().filter(|component| !has_failed(component));
         for missing in others.filter_map(|component| text::missing(report, component)) {
-            warn(telling, &format!("{}: {missing}", report.model));
+            warn(printing, &format!("{}: {missing}", report.model));
         }
     }
-    if telling.json {
+    if printing.json {
         writeln!(output, "{}", json(&results, &failures))?;
-    } else if !telling.quiet {
+    } else if !printing.quiet {
         for fitted in &results {
-            tell_model(goal, &set, fitted, telling, output)?;
+            tell_model(goal, &set, fitted, printing, output)?;
         }
         writeln!(output, "Written to {}", out.path().display())?;
     }
@@ -150,12 +150,12 @@ fn recall(
     flags: &FitFlags,
     given: Option<&MaterialFile>,
     out: &Output,
-    telling: Telling,
+    printing: Printing,
 ) -> Result<Vec<Finished>, Failure> {
     let settings: Vec<String> =
         flags.model.models().into_iter().map(|model| format!("{:?}", flags.settings(model))).collect();
     let key = (program(), "fit", goal.components().collect::<Vec<_>>(), goal.anew(), settings, given, set);
-    Ok(recalled(out.recall(&key)?, telling, |Finished { stage, .. }| {
+    Ok(recalled(out.recall(&key)?, printing, |Finished { stage, .. }| {
         let pass = if stage.pass > 1 { ", second pass" } else { "" };
         format!("{} {}{pass}", stage.model, stage.name())
     }))
@@ -168,14 +168,14 @@ fn fit_model(
     model: Model,
     given: Option<&MaterialFile>,
     memory: &mut Memory<'_>,
-    telling: Telling,
+    printing: Printing,
 ) -> Result<Fitted, Failure> {
     let settings = flags.settings(model);
     let known = match given {
         Some(file) => Knowledge::exact(file.curves()?).without(goal.anew()),
         None => Knowledge::default(),
     };
-    let progress = Progress::new(&model.to_string(), !telling.quiet);
+    let progress = Progress::new(&model.to_string(), !printing.quiet);
     let report = incremental::resume(set, goal.stages(), &known, &settings, memory, &mut progress.watch());
     progress.finish();
     let mut report = report?;
@@ -246,18 +246,18 @@ fn tell_model(
     goal: Goal,
     set: &MeasurementSet,
     Fitted { report, material }: &Fitted,
-    telling: Telling,
+    printing: Printing,
     output: &mut impl Write,
 ) -> Result<(), Failure> {
     if material.provenance.as_published {
         writeln!(output, "{}\n", text::as_published(report))?;
     }
-    let told: Vec<_> = match telling.verbose {
+    let told: Vec<_> = match printing.verbose {
         true => report.stages.iter().collect(),
         false => report.last_stages().collect(),
     };
     for stage in told {
-        writeln!(output, "{}", text::stage(stage, telling.verbose))?;
+        writeln!(output, "{}", text::stage(stage, printing.verbose))?;
     }
     for missing in goal.components().filter_map(|component| text::missing(report, component)) {
         writeln!(output, "{missing}\n")?;

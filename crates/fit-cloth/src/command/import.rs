@@ -6,7 +6,7 @@ pub mod table;
 
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::telling::Telling;
+use crate::printing::Printing;
 use clap::{Args, Subcommand};
 use std::io::Write;
 use strip::StripOptions;
@@ -42,9 +42,9 @@ pub enum ImportTable {
 ///
 /// # Errors
 /// A bad table, set or option; I/O errors.
-pub fn run(import: &Import, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(import: &Import, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     match &import.table {
-        ImportTable::Strip(options) => strip::run(options, telling, output),
-        ImportTable::Table(options) => table::run(options, telling, output),
+        ImportTable::Strip(options) => strip::run(options, printing, output),
+        ImportTable::Table(options) => table::run(options, printing, output),
     }
 }

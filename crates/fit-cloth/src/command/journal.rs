@@ -1,6 +1,6 @@
 //! Resuming a stopped run from its journal of finished parts.
 
-use crate::telling::{Telling, note, warn};
+use crate::printing::{Printing, note, warn};
 use cloth_data::store::Recalled;
 use serde::Serialize;
 
@@ -13,14 +13,14 @@ pub(super) fn program() -> impl Serialize {
 }
 
 /// Returns the records of a stopped run, and notes on standard error whether they are used.
-pub(super) fn recalled<T>(recalled: Recalled<T>, telling: Telling, name: impl Fn(&T) -> String) -> Vec<T> {
+pub(super) fn recalled<T>(recalled: Recalled<T>, printing: Printing, name: impl Fn(&T) -> String) -> Vec<T> {
     let Recalled { records, forgotten } = recalled;
     if forgotten {
-        warn(telling, "discarded the results of an interrupted run: it had other input or settings");
+        warn(printing, "discarded the results of an interrupted run: it had other input or settings");
     }
     if !records.is_empty() {
         let names: Vec<String> = records.iter().map(name).collect();
-        note(telling, &format!("resuming an interrupted run; already finished: {}", names.join("; ")));
+        note(printing, &format!("resuming an interrupted run; already finished: {}", names.join("; ")));
     }
     records
 }

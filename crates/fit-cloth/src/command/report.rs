@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::whole;
 use crate::page::Page;
-use crate::telling::{Telling, tell};
+use crate::printing::{Printing, print_result};
 use clap::Args;
 use serde_json::json;
 use std::io::Write;
@@ -30,9 +30,9 @@ pub struct ReportOptions {
 ///
 /// # Errors
 /// A folder without valid page data; I/O errors.
-pub fn run(options: &ReportOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &ReportOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let page = Page::read(&options.dir)?;
     let path = whole(|| page.write_again(&options.dir))?;
-    tell(telling, output, &format!("Written to {}", path.display()), &json!({ "page": path }))?;
+    print_result(printing, output, &format!("Written to {}", path.display()), &json!({ "page": path }))?;
     Ok(Outcome::Done)
 }

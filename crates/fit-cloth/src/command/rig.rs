@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::options::{parse_kind, parse_nodes};
 use crate::outcome::Outcome;
 use crate::output::Output;
+use crate::printing::{Printing, print_result};
 use crate::progress::Progress;
-use crate::telling::{Telling, tell};
 use clap::Args;
 use cloth_data::error::Error;
 use cloth_data::frame::Kind;
@@ -75,7 +75,7 @@ pub struct RigOptions {
 ///
 /// # Errors
 /// An invalid fabric or setting; I/O errors.
-pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &RigOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let fabric = known_fabric(&options.fabric)?;
     let rig = Rig {
         sequences: options.sequences.clone(),
@@ -93,7 +93,7 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
     };
     refuse_measured(&options.out)?;
     let out = Output::claim(&options.out)?;
-    let progress = Progress::new(&format!("measuring {}", fabric.name), !telling.quiet);
+    let progress = Progress::new(&format!("measuring {}", fabric.name), !printing.quiet);
     let set = rig.measure(&fabric);
     progress.finish();
     let set = set?;
@@ -102,7 +102,7 @@ pub fn run(options: &RigOptions, telling: Telling, output: &mut impl Write) -> R
     let names: Vec<&str> = set.sequences.iter().map(|sequence| &sequence.name[..]).collect();
     let text = format!("{frames} frames of {} in {}", names.join(", "), options.out.display());
     let json = json!({ "set": options.out, "fabric": set.fabric.name, "sequences": names, "frames": frames });
-    tell(telling, output, &text, &json)?;
+    print_result(printing, output, &text, &json)?;
     Ok(Outcome::Done)
 }
 

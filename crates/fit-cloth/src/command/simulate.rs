@@ -5,8 +5,8 @@ use crate::options::{CompressionChoice, STABLE, refuse_within};
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_simulation_plots;
+use crate::printing::{Printing, print_result, warn_of_defects};
 use crate::progress::StepBar;
-use crate::telling::{Telling, tell, warn_of_defects};
 use crate::text;
 use clap::{Args, ValueEnum};
 use cloth_data::error::Error;
@@ -83,7 +83,11 @@ impl From<FormatChoice> for ShapeFormat {
 ///
 /// # Errors
 /// Bad input; an output folder that is not a previous result; I/O errors.
-pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(
+    options: &SimulateOptions,
+    printing: Printing,
+    output: &mut impl Write,
+) -> Result<Outcome, Failure> {
     let folder = options.output_folder();
     check_output(&folder, "--out")?;
     for (flag, path) in [("SCENE", &options.scene), ("--material", &options.material)] {
@@ -104,15 +108,15 @@ pub fn run(options: &SimulateOptions, telling: Telling, output: &mut impl Write)
     }
     let out = Output::claim(&folder)?;
     let findings = check_curves(material.model, &curves, |_| None);
-    warn_of_defects(telling, &options.material.display().to_string(), &findings);
-    let simulation = options.simulate(&scene, &material, telling)?;
+    warn_of_defects(printing, &options.material.display().to_string(), &findings);
+    let simulation = options.simulate(&scene, &material, printing)?;
     out.replace(|temporary| {
         write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;
         write_simulation_plots(temporary, &scene, &simulation)
     })?;
     let text = text::simulation(&scene, &material, &simulation);
     let text = format!("{text}\nWritten to {}", folder.display());
-    tell(telling, output, &text, &simulation_json(&scene, &material, &simulation))?;
+    print_result(printing, output, &text, &simulation_json(&scene, &material, &simulation))?;
     Ok(if simulation.converged() { Outcome::Done } else { Outcome::NotConverged })
 }
 
@@ -123,8 +127,8 @@ impl SimulateOptions {
         })
     }
 
-    fn simulate(&self, scene: &Scene, material: &Material, telling: Telling) -> Result<Simulation, Error> {
-        let bar = StepBar::new(&scene.name, !telling.quiet);
+    fn simulate(&self, scene: &Scene, material: &Material, printing: Printing) -> Result<Simulation, Error> {
+        let bar = StepBar::new(&scene.name, !printing.quiet);
         let simulation = if self.rest {
             to_rest(scene, material, &mut |step| bar.at(step, None))
         } else {

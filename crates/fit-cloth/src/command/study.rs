@@ -5,8 +5,8 @@ use crate::options::{SetFlags, TopicChoice, use_threads};
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_study_plots;
+use crate::printing::{Printing, print_result};
 use crate::progress::Progress;
-use crate::telling::{Telling, tell};
 use crate::text;
 use clap::Args;
 use cloth_data::store::write_file;
@@ -55,7 +55,7 @@ pub struct StudyOptions {
 ///
 /// # Errors
 /// Bad input; an output folder that is not a previous result; I/O errors.
-pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &StudyOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let extent = if options.quick { Extent::quick() } else { Extent::full() };
     let published_nodes = match options.as_published {
         true => extent.fit_nodes.clone(),
@@ -63,7 +63,7 @@ pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) ->
     };
     let topics = options.topics.iter().map(|topic| (*topic).into()).collect();
     let extent = Extent { topics, published_nodes, ..extent };
-    let progress = Progress::new("study", !telling.quiet);
+    let progress = Progress::new("study", !printing.quiet);
     let (subject, out) = options.subject(&extent)?;
     let study = study::run(&subject, &extent, &progress);
     progress.finish();
@@ -73,7 +73,7 @@ pub fn run(options: &StudyOptions, telling: Telling, output: &mut impl Write) ->
         write_study_plots(temporary, &study)
     })?;
     let text = format!("{}\nWritten to {}", text::study(&study), out.path().display());
-    tell(telling, output, &text, &study_json(&study))?;
+    print_result(printing, output, &text, &study_json(&study))?;
     Ok(Outcome::Done)
 }
 

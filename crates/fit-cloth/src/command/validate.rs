@@ -5,8 +5,8 @@ use crate::failure::{Failure, with_option};
 use crate::options::{SetFlags, parse_kind, refuse_within};
 use crate::outcome::Outcome;
 use crate::plot::write_validation_plots;
+use crate::printing::{Printing, print_result, warn, warn_of_defects};
 use crate::progress::Progress;
-use crate::telling::{Telling, tell, warn, warn_of_defects};
 use crate::text;
 use clap::Args;
 use cloth_data::error::Error;
@@ -55,7 +55,11 @@ pub struct ValidateOptions {
 ///
 /// # Errors
 /// Bad input; a set without the requested tests; an output folder that is not a previous result; I/O errors.
-pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(
+    options: &ValidateOptions,
+    printing: Printing,
+    output: &mut impl Write,
+) -> Result<Outcome, Failure> {
     let (set, out) = options.on.open("-validation")?;
     refuse_within("--material", &options.material, out.path())?;
     let material = MaterialFile::read(&options.material)?;
@@ -67,10 +71,10 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     if options.kinds.is_empty() && !options.all && kinds.len() == Kind::ALL.len() {
         let taken = "using all tests of the set, since it has neither complex-shear nor corner-pull: for curves fitted \
                      to these tests this is no validation";
-        warn(telling, taken);
+        warn(printing, taken);
     }
-    warn_of_defects(telling, &options.material.display().to_string(), &check_material(&material)?);
-    let progress = Progress::new("validating", !telling.quiet);
+    warn_of_defects(printing, &options.material.display().to_string(), &check_material(&material)?);
+    let progress = Progress::new("validating", !printing.quiet);
     let validation =
         validate(&set, &kinds, &curves, &material.assumed(), &options.settings(&material), &progress.watch());
     progress.finish();
@@ -83,12 +87,12 @@ pub fn run(options: &ValidateOptions, telling: Telling, output: &mut impl Write)
     let text = text::validation(&set, &material, &validation);
     let text = format!("{text}\nWritten to {}", out.path().display());
     for notice in &validation.prediction.notices {
-        warn(telling, &text::notice(notice));
+        warn(printing, &text::notice(notice));
     }
     if let Some(warning) = text::other_grid(&material, &validation) {
-        warn(telling, &warning);
+        warn(printing, &warning);
     }
-    tell(telling, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
+    print_result(printing, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
     Ok(if validation.lost().is_empty() { Outcome::Done } else { Outcome::NotConverged })
 }
 

@@ -3,7 +3,7 @@
 use crate::shown::curve_labels;
 use crate::text::{self, NO_KNOWLEDGE};
 use cloth_fit::incremental::FitReport;
-use cloth_fit::stage::report::{Histogram, Sample, StageReport};
+use cloth_fit::stage::report::{CurveRow, Histogram, StageReport};
 use cloth_sim::material::Component;
 use serde::{Deserialize, Serialize};
 
@@ -62,11 +62,11 @@ fn curve(report: &FitReport, component: Component) -> Curve {
         return Curve { verdict: missing.unwrap_or_else(|| format!("{component} was given.")), ..empty };
     };
     let found = &stage.curve;
-    let sample = |sample: &Sample| {
+    let sample = |sample: &CurveRow| {
         let band = sample.band.into_iter().flatten();
         [sample.strain, sample.stress].into_iter().chain(band).collect()
     };
-    let point = |(i, point): (usize, &Sample)| {
+    let point = |(i, point): (usize, &CurveRow)| {
         let value = found.curve.stiffnesses()[i];
         Point {
             strain: point.strain,

@@ -5,7 +5,7 @@ use super::chart::{Axes, Chart, figure_over};
 use super::drawing::Drawn;
 use super::palette::{GREEN, GREY, MODEL};
 use crate::shown::curve_labels;
-use cloth_fit::stage::report::{Histogram, Sample, StageReport};
+use cloth_fit::stage::report::{CurveRow, Histogram, StageReport};
 use plotters::style::Color;
 use std::ops::Range;
 
@@ -18,8 +18,8 @@ const LEAST: f64 = 5e-3;
 
 /// A curve in the units of its figure.
 struct Plotted<'r> {
-    samples: Vec<Sample>,
-    points: Vec<Sample>,
+    samples: Vec<CurveRow>,
+    points: Vec<CurveRow>,
     /// The strains between which the curve was observed.
     seen: [f64; 2],
     histogram: &'r Histogram,
@@ -61,23 +61,23 @@ pub(super) fn draw(stage: &StageReport) -> Drawn<String> {
 
 impl<'r> Plotted<'r> {
     fn new(stage: &'r StageReport, unit: f64) -> Self {
-        let in_unit = |sample: &Sample| Sample {
+        let in_unit = |sample: &CurveRow| CurveRow {
             stress: unit * sample.stress,
             band: sample.band.map(|band| band.map(|side| unit * side)),
             ..*sample
         };
         let all = &stage.curve.samples;
         let kept = all.iter().enumerate().filter(|(i, _)| i % EVERY == 0 || i + 1 == all.len());
-        let mut samples: Vec<Sample> = kept.map(|(_, sample)| in_unit(sample)).collect();
-        let points: Vec<Sample> = stage.curve.points.iter().map(in_unit).collect();
-        let range = |value: fn(&Sample) -> f64| {
+        let mut samples: Vec<CurveRow> = kept.map(|(_, sample)| in_unit(sample)).collect();
+        let points: Vec<CurveRow> = stage.curve.points.iter().map(in_unit).collect();
+        let range = |value: fn(&CurveRow) -> f64| {
             let values = samples.iter().chain(&points).map(value);
             values.fold([0.0, 0.0], |[low, high]: [f64; 2], value| [low.min(value), high.max(value)])
         };
         let [strains, stresses] = [range(|s| s.strain), range(|s| s.stress)];
         // The band of a poorly known curve may be very wide.
         let most = FARTHEST * (stresses[1] - stresses[0]);
-        let side = |sample: &Sample, side: usize| sample.band.map_or(0.0, |band| band[side]);
+        let side = |sample: &CurveRow, side: usize| sample.band.map_or(0.0, |band| band[side]);
         let [low, high] = [
             samples.iter().map(|s| side(s, 0)).fold(stresses[0], f64::min),
             samples.iter().map(|s| side(s, 1)).fold(stresses[1], f64::max),
@@ -115,7 +115,7 @@ impl<'r> Plotted<'r> {
         let outline: Vec<_> = above.chain(below).collect();
         let label = if self.is_cut { "95 % band, cut off" } else { "95 % band" };
         chart.areas((!outline.is_empty()).then_some(outline), MODEL.mix(0.22), label);
-        let place = |sample: &Sample| (sample.strain, sample.stress);
+        let place = |sample: &CurveRow| (sample.strain, sample.stress);
         let slack = LEAST * (self.seen[1] - self.seen[0]);
         let [first, last] = [self.seen[0] - slack, self.seen[1] + slack];
         let before = self.samples.iter().filter(|sample| sample.strain < first);

@@ -77,7 +77,7 @@ impl View {
         Self { upright, right, up: towards.cross(&right), towards }
     }
 
-    /// The same view from vertically above.
+    /// View from vertically above.
     pub(super) fn above(&self) -> Self {
         Self { up: self.upright.cross(&self.right), towards: self.upright, ..*self }
     }

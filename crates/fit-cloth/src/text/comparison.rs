@@ -45,7 +45,7 @@ pub fn comparison(comparison: &Comparison) -> String {
     format!("{lines}\n{}\n{}", ranked_by(comparison.ranked_by), losses(comparison))
 }
 
-/// The same as cells, for the page.
+/// Table cells, for the page.
 pub fn ranking(comparison: &Comparison) -> Ranking {
     Ranking {
         by: ranked_by(comparison.ranked_by),

@@ -4,7 +4,7 @@ use super::band::half_band;
 use super::list::list;
 use super::range::seen;
 use cloth_fit::incremental::FitReport;
-use cloth_fit::stage::report::{Sample, StageReport};
+use cloth_fit::stage::report::{CurveRow, StageReport};
 use cloth_sim::material::Component;
 use std::fmt::Write;
 
@@ -20,7 +20,7 @@ pub fn summary(report: &FitReport) -> String {
     text
 }
 
-/// The same as cells: component, points, value at the end, band, range, sequences; cells that do not apply are empty.
+/// Table cells: component, points, value at the end, band, range, sequences; cells that do not apply are empty.
 pub fn summary_rows(report: &FitReport) -> Vec<[String; 6]> {
     let row = |component| match report.stage(component).filter(|stage| stage.curve.observed) {
         Some(stage) => row(component, stage),
@@ -45,7 +45,7 @@ fn row(component: Component, stage: &StageReport) -> [String; 6] {
     [component.to_string(), stage.curve.curve.len().to_string(), value, band(end), range, seen_by]
 }
 
-fn band(sample: &Sample) -> String {
+fn band(sample: &CurveRow) -> String {
     half_band(sample).map_or("not known".into(), |half| format!("{:.1} %", 100.0 * half))
 }
 

@@ -219,7 +219,7 @@ impl Bench {
         bench
     }
 
-    /// The same on a system that cannot swap two folders in one step.
+    /// As above on a system that cannot swap two folders in one step.
     pub(crate) fn without_exchange(self) -> Self {
         Self { no_exchange: true, ..self }
     }

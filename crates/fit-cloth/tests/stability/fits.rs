@@ -10,7 +10,7 @@ use cloth_fit::incremental::{self, FitReport, Stage};
 use cloth_fit::material::file::MaterialFile;
 use cloth_fit::optimise::uncertainty::{Covariance, Scatter};
 use cloth_fit::stage::knowledge::Knowledge;
-use cloth_fit::stage::report::{Sample, StageReport};
+use cloth_fit::stage::report::{CurveRow, StageReport};
 use cloth_fit::stage::{Constraints, Settings, Watch};
 use cloth_sim::material::{Component, Model};
 use fit_cloth::text;
@@ -50,8 +50,8 @@ pub(crate) fn up_to(largest: f64, count: usize) -> Vec<f64> {
 }
 
 /// The sample of a curve nearest to a strain.
-pub(crate) fn at(stage: &StageReport, strain: f64) -> &Sample {
-    let off = |sample: &&Sample| (sample.strain - strain).abs();
+pub(crate) fn at(stage: &StageReport, strain: f64) -> &CurveRow {
+    let off = |sample: &&CurveRow| (sample.strain - strain).abs();
     stage.curve.samples.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
 }
 

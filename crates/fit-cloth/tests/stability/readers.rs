@@ -6,7 +6,9 @@ use cloth_data::error::{Error, Result};
 use cloth_data::frame::{MeasurementSet, Noise, Phase};
 use cloth_data::io::{ShapeFormat, read_fabric, read_sequence, write_set, write_shapes};
 use cloth_data::rig::KnownFabric;
-use cloth_data::strip::{Direction, Extension, ForceTable, Measure, StripTest, read_force_table, read_strip};
+use cloth_data::strip::{
+    Conversion, Direction, Extension, ForceTable, StripTest, read_force_table, read_strip,
+};
 use cloth_fit::material::Material;
 use cloth_fit::material::file::MaterialFile;
 use cloth_scene::scene::Scene;
@@ -189,8 +191,8 @@ pub(crate) const READERS: [Reader; 20] = [
         form: Form::Table,
         read: |at| {
             let extension = Extension::Displacement("travel_mm".into());
-            let (force, measure) = ("load_N".into(), Measure::Green);
-            let test = ForceTable { width: 0.05, gauge: Some(0.2), extension, force, rows: None, measure };
+            let (force, conversion) = ("load_N".into(), Conversion::Green);
+            let test = ForceTable { width: 0.05, gauge: Some(0.2), extension, force, rows: None, conversion };
             read_force_table(&at.join("pull.csv"), &test)
                 .map(|file| format!("{:?}", (&file.strains, &file.stresses)))
         },

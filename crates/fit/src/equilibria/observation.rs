@@ -50,7 +50,7 @@ impl Objective {
         }
     }
 
-    /// What was observed of a frame.
+    /// Observations of one frame.
     pub(super) fn observations(self, replica: &Replica, frame: &ReplicaFrame) -> Vec<Observation> {
         match (self, &frame.observed) {
             (Self::Forces, _) => {
@@ -133,7 +133,7 @@ impl Observation {
         }
     }
 
-    /// What it is of: observations of one source follow one another through a sequence's frames.
+    /// Source: observations of one source follow one another through a sequence's frames.
     pub(super) fn source(&self) -> [usize; 2] {
         match self.quantity {
             Quantity::Force { clip, number, .. } => [clip, number],

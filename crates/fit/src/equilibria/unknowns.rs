@@ -68,7 +68,7 @@ impl Unknowns {
         self.0.is_empty()
     }
 
-    /// The same curves with other control values.
+    /// Copies the unknowns with other control values.
     ///
     /// # Errors
     /// Values that are not finite, or of another number.

@@ -48,7 +48,7 @@ impl Validated {
         Some((square / rows.len() as f64).sqrt())
     }
 
-    /// The same as a share of the measured range.
+    /// RMS error as a share of the measured range.
     pub fn measure_share(&self) -> Option<f64> {
         let (_, rows) = self.measure.as_ref()?;
         let [low, high] = rows

@@ -10,7 +10,7 @@
 //! Two laboratories differ by 15–25 % on one fabric (Cao et al. 2008): a tenth is good, a third is poor.
 
 use crate::incremental::FitReport;
-use crate::stage::report::{Sample, SequenceReport, StageReport};
+use crate::stage::report::{CurveRow, SequenceReport, StageReport};
 use cloth_data::notice::{Notice, Severity};
 use cloth_sim::material::Component;
 use serde::{Deserialize, Serialize};
@@ -156,7 +156,7 @@ pub fn widest_band(stage: &StageReport) -> Option<(f64, f64)> {
 
 /// Reason: a wide band, or no band where the curve was observed.
 fn unsure(stage: &StageReport) -> Option<(Grade, String)> {
-    let seen = |sample: &&Sample| sample.strain >= stage.curve.seen[0] && sample.strain != 0.0;
+    let seen = |sample: &&CurveRow| sample.strain >= stage.curve.seen[0] && sample.strain != 0.0;
     let widest =
         widest_band(stage).filter(|_| stage.curve.samples.iter().filter(seen).all(|s| s.band.is_some()));
     let Some((place, share)) = widest else {

@@ -99,7 +99,7 @@ impl Scatter {
                 < chi_square(freedom, -Z_99) * self.expected * self.noise.powi(2)
     }
 
-    /// The same, converted to other units.
+    /// Converts to other units.
     pub fn times(self, unit: f64) -> Self {
         Self { noise: self.noise * unit, residual: self.residual * unit, misfit: self.misfit * unit, ..self }
     }

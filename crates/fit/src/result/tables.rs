@@ -1,7 +1,7 @@
 //! The tables of a result folder.
 
 use crate::incremental::FitReport;
-use crate::stage::report::{Sample, SequenceReport, StageReport};
+use crate::stage::report::{CurveRow, SequenceReport, StageReport};
 use cloth_data::curve_file::{ENGINEERING, columns, engineering};
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub(super) fn curve_table(stage: &StageReport) -> String {
     let curve = &stage.curve;
     let banded = curve.samples.iter().any(|sample| sample.band.is_some());
     let measure = stage.model.strain_measure(stage.components[0]);
-    let beside = |sample: &Sample| engineering(measure, sample.strain, sample.stress);
+    let beside = |sample: &CurveRow| engineering(measure, sample.strain, sample.stress);
     let engineering = curve.samples.iter().all(|sample| beside(sample).is_some());
     let columns = columns(Some(measure));
     let mut table = columns[..if banded { 5 } else { 3 }].join(",");
@@ -19,7 +19,7 @@ pub(super) fn curve_table(stage: &StageReport) -> String {
         table = [&table, ENGINEERING[0], ENGINEERING[1]].join(",");
     }
     table.push('\n');
-    for sample @ Sample { strain, stiffness, stress, band } in &curve.samples {
+    for sample @ CurveRow { strain, stiffness, stress, band } in &curve.samples {
         let _ = write!(table, "{strain},{stiffness},{stress}");
         if banded {
             let [low, high] = [0, 1].map(|side| cell(band.map(|band| band[side])));

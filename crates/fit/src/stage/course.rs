@@ -168,11 +168,11 @@ fn simulate<'r>(
     Ok(simulation)
 }
 
-/// How sure a stage is of its curve.
+/// Uncertainty of a fitted curve.
 struct Judgement {
     scatter: Scatter,
     covariance: Covariance,
-    /// What errors of the known curves do to this one.
+    /// Propagated errors of the known curves.
     gain: DMatrix<f64>,
     observed: bool,
 }

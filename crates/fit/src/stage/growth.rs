@@ -224,7 +224,7 @@ fn points_of(unknowns: &Unknowns) -> usize {
     unknowns.iter().map(|unknown| unknown.curve.len()).max().unwrap_or(0)
 }
 
-/// The same curves through other, equidistant control points, over all that is visited.
+/// Resamples the curves at other, equidistant control points over the visited range.
 fn resampled(simulation: &Equilibria<'_>, unknowns: &Unknowns, points: usize) -> Result<Unknowns> {
     let resampled = |unknown: &Unknown| {
         let curve = unknown.curve.resampled(points, simulation.reach(unknown))?;

@@ -1,4 +1,4 @@
-//! What a stage fits, and on what.
+//! Components of a stage and the tests that show them.
 
 use super::settings::Settings;
 use crate::equilibria::Objective;
@@ -12,14 +12,14 @@ pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
     Kind::ALL.into_iter().filter(|kind| kind.shows().iter().any(|shown| components.contains(shown))).collect()
 }
 
-/// What a stage fits, and on what.
+/// Components of a stage and the tests that show them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Plan {
     /// The components that share the fitted curve: one, or weft and warp of an isotropic variant.
     pub fitted: Vec<Component>,
     /// All components that store energy.
     pub components: Vec<Component>,
-    /// What is compared.
+    /// Quantities compared.
     pub objective: Objective,
     /// The tests that show it.
     pub kinds: Vec<Kind>,

@@ -19,7 +19,7 @@ pub struct CurveReport {
     /// The curve, over the model's own strain.
     pub curve: StiffnessCurve,
     /// The control points as rows of the curve file. Bending: over curvature.
-    pub points: Vec<Sample>,
+    pub points: Vec<CurveRow>,
     /// False if the measurements do not even determine the curve's scale; it is then no result and has no file.
     pub observed: bool,
     /// Standard deviation of each control value; `None` if no frame observes it.
@@ -28,13 +28,13 @@ pub struct CurveReport {
     pub half_bands: Vec<Option<f64>>,
     /// Strains visited by the measurement; shear and bending: absolute values.
     pub visited: [f64; 2],
-    /// The same range in the units of the curve file. Bending: curvatures, 1/m.
+    /// The range in the units of the curve file. Bending: curvatures, 1/m.
     pub seen: [f64; 2],
     /// Visited share of the range of control points, 0 … 1.
     pub share_visited: f64,
     /// 201 rows from rest, or from the smallest strain if that is negative, to the largest visited strain; no band
     /// below the visited strains. Bending: over curvature.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<CurveRow>,
     /// Distribution of strains over the same range. Bending: over curvature.
     pub histogram: Histogram,
     /// Number of directions of the control values that the data determine.
@@ -59,7 +59,7 @@ impl CurveReport {
 
 /// One row of a curve file, or a control point in the same form.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct CurveRow {
     /// Strain; bending: curvature, 1/m.
     pub strain: f64,
     /// Stress over strain, N/m; bending: flexural rigidity, moment over curvature, N·m.
@@ -147,7 +147,7 @@ pub struct ForceRow {
     pub number: usize,
     /// Unit direction of the component, in the specimen's own frame.
     pub direction: Vector3<f64>,
-    /// The same in world axes.
+    /// The force in world axes.
     pub world: Vector3<f64>,
     /// Extension of the test: see [`ReplicaFrame`](crate::twin::replica::ReplicaFrame::extension).
     pub extension: f64,

@@ -69,7 +69,7 @@ pub enum FirstStiffness {
     /// that Peirce's formula gives for an overhang.
     #[default]
     FromMeasurements,
-    /// The same for every fabric: 100 N/m for stretch, 10 N/m for shear, a flexural rigidity of 1e-5 N·m for bending.
+    /// Typical starts, whatever the fabric: 100 N/m for stretch, 10 N/m for shear, a flexural rigidity of 1e-5 N·m for bending.
     /// The published method does not state its start; these round numbers are ours and lie between light and heavy
     /// fabrics.
     Constant,

@@ -1,7 +1,7 @@
 //! Builds the report of a stage.
 
 use super::growth::Growth;
-use super::report::{CurveReport, ForceRow, Histogram, Hysteresis, Sample, SequenceReport};
+use super::report::{CurveReport, CurveRow, ForceRow, Histogram, Hysteresis, SequenceReport};
 use super::shapes::Shapes;
 use crate::equilibria::{Equilibria, Settled, Unknown};
 use crate::optimise::uncertainty::Covariance;
@@ -71,7 +71,7 @@ struct Rows<'a> {
 
 impl Rows<'_> {
     /// Equidistant rows over a range of strains.
-    fn over(&self, range: [f64; 2]) -> Vec<Sample> {
+    fn over(&self, range: [f64; 2]) -> Vec<CurveRow> {
         let [low, high] = range.map(|strain| self.place(strain));
         (0..SAMPLES).map(|i| self.at(low + (high - low) * i as f64 / (SAMPLES - 1) as f64)).collect()
     }
@@ -98,7 +98,7 @@ impl Rows<'_> {
         self.rolled.map_or(strain, |rolled| rolled.curvature(strain))
     }
 
-    fn at(&self, place: f64) -> Sample {
+    fn at(&self, place: f64) -> CurveRow {
         let (curve, rolled) = (self.curve, self.rolled);
         let strain = rolled.map_or(place, |rolled| rolled.strain(place));
         let lever = rolled.map_or(1.0, |rolled| rolled.lever(place));
@@ -119,7 +119,7 @@ impl Rows<'_> {
             Some(Rolled::Springs { .. }) if place == 0.0 => 0.0,
             _ => stress / place,
         };
-        Sample { strain: place, stiffness, stress, band }
+        CurveRow { strain: place, stiffness, stress, band }
     }
 }
 

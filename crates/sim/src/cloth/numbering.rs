@@ -73,7 +73,7 @@ pub(super) struct GraphPass {
 }
 
 impl GraphPass {
-    /// The same graph between tied groups.
+    /// Graph between tied groups.
     pub(super) fn led(self, leader: &[usize]) -> Vec<BTreeSet<usize>> {
         let mut led = vec![BTreeSet::new(); leader.len()];
         for (node, neighbours) in self.neighbours.into_iter().enumerate() {

@@ -54,7 +54,7 @@ fn pair(part: &'static str, by_default: bool, with: TestScene, without: TestScen
     Pair { part, by_default, with: (with, settings), without: (without, settings) }
 }
 
-/// The same scene with more or other components.
+/// Copies a scene with more or other components.
 fn of(scene: &TestScene, components: &[Component]) -> TestScene {
     let plan = Plan { components: components.to_vec(), ..scene.plan.clone() };
     TestScene { plan, ..scene.clone() }
@@ -99,7 +99,7 @@ fn of_sheet(sheet: &TestScene) -> Vec<Pair> {
     ]
 }
 
-/// The same scene with another solver.
+/// Copies a scene with another solver.
 fn solved(part: &'static str, scene: &TestScene, without: equilibrium::Settings) -> Pair {
     let with = equilibrium::Settings::default();
     Pair { part, by_default: true, with: (scene.clone(), with), without: (scene.clone(), without) }

@@ -448,7 +448,7 @@ fn other_tables() {
 fn bytes_that_are_no_text() {
     let utf16 = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>();
     let with_mark = [vec![0xFF, 0xFE], utf16("frame")].concat();
-    let cases: [(&[u8], &str); 7] = [
+    let cases: [(&[u8], &str); 8] = [
         (
             b"PK\x03\x04\x14\0",
             "corners/clips.csv text: found a workbook (.xlsx, .ods or .xls) or another archive, expected plain text (of a workbook save the sheet as CSV)",

@@ -5,7 +5,7 @@ use crate::file_curve::{FileCurve, Source, read};
 use crate::options::Reading;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::telling::{Telling, tell, warn};
+use crate::printing::{Printing, print_result, warn};
 use cloth_data::curve_edit::largest_stress;
 use cloth_data::error::Error;
 use cloth_fit::material::file::MaterialFile;
@@ -44,7 +44,7 @@ pub(super) fn finish(
     [input, out]: [&Path; 2],
     subject: &FileCurve,
     (edited, text): (&StiffnessCurve, &str),
-    telling: Telling,
+    printing: Printing,
     output: &mut impl Write,
 ) -> Result<Outcome, Failure> {
     write("--out", out, input, text)?;
@@ -54,7 +54,7 @@ pub(super) fn finish(
     for finding in &defects {
         let scale = subject.strain_per_unit;
         let shown = Finding { strains: finding.strains.map(|strain| strain / scale), ..**finding };
-        warn(telling, &format!("{}: {shown}: {}", subject.name, finding.consequence()));
+        warn(printing, &format!("{}: {shown}: {}", subject.name, finding.consequence()));
     }
     let describe = |curve: &StiffnessCurve| {
         let last = curve.strains()[curve.len() - 1] / subject.strain_per_unit;
@@ -78,6 +78,6 @@ pub(super) fn finish(
         "largest_stress": largest_stress(edited),
         "sound": defects.is_empty(),
     });
-    tell(telling, output, &words, &json)?;
+    print_result(printing, output, &words, &json)?;
     Ok(Outcome::Done)
 }

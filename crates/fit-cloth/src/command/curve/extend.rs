@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::file_curve::Source;
 use crate::options::Reading;
 use crate::outcome::Outcome;
-use crate::telling::Telling;
+use crate::printing::Printing;
 use clap::Args;
 use cloth_data::curve_edit::{Extension, Trend, extended};
 use std::io::Write;
@@ -60,7 +60,7 @@ pub struct ExtendOptions {
 ///
 /// # Errors
 /// A bad file or option; I/O errors.
-pub fn run(options: &ExtendOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &ExtendOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (source, subject) = one(&options.file, &options.reading)?;
     let scale = subject.strain_per_unit;
     let trend = match (options.slope, options.stress_at_end) {
@@ -79,5 +79,5 @@ pub fn run(options: &ExtendOptions, telling: Telling, output: &mut impl Write) -
             in_material(*file, &subject, &edited, &change)
         }
     };
-    finish([&options.file, &options.out], &subject, (&edited, &text), telling, output)
+    finish([&options.file, &options.out], &subject, (&edited, &text), printing, output)
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::file_curve::Source;
 use crate::options::Reading;
 use crate::outcome::Outcome;
-use crate::telling::Telling;
+use crate::printing::Printing;
 use clap::Args;
 use cloth_data::curve_edit::{largest_stress, scaled};
 use std::io::Write;
@@ -51,7 +51,7 @@ pub struct ScaleOptions {
 ///
 /// # Errors
 /// A bad file or factor; I/O errors.
-pub fn run(options: &ScaleOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &ScaleOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let (source, subject) = one(&options.file, &options.reading)?;
     let stress = match options.largest_stress {
         Some(largest) => largest / largest_stress(&subject.curve),
@@ -67,5 +67,5 @@ pub fn run(options: &ScaleOptions, telling: Telling, output: &mut impl Write) ->
             if file.is_two_sided() { scaled.with_curve(&edited) } else { scaled }.to_csv()
         }
     };
-    finish([&options.file, &options.out], &subject, (&edited, &text), telling, output)
+    finish([&options.file, &options.out], &subject, (&edited, &text), printing, output)
 }

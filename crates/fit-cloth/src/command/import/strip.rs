@@ -4,14 +4,14 @@ use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::{Failure, with_option};
 use crate::outcome::Outcome;
 use crate::output::whole;
-use crate::telling::{Telling, note_lines_above, tell, warn};
+use crate::printing::{Printing, note_lines_above, print_result, warn};
 use crate::text;
 use clap::{Args, ValueEnum};
 use cloth_data::error::Error;
 use cloth_data::frame::Sequence;
 use cloth_data::io::read_fabric;
 use cloth_data::strip::{
-    Added, Column, Direction, FreeLength, Sample, Strip, StripTest, add_to_set, read_strip,
+    Added, Column, Direction, FabricFields, FreeLength, Strip, StripTest, add_to_set, read_strip,
 };
 use nalgebra::Isometry3;
 use serde_json::json;
@@ -119,13 +119,13 @@ pub enum StripDirection {
 ///
 /// # Errors
 /// A bad table, set or option; I/O errors.
-pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &StripOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let test = strip_test(options);
     let mut strip = read_strip(&options.file, &test).map_err(by_option)?;
-    note_lines_above(telling, &options.file, &test.columns())?;
+    note_lines_above(printing, &options.file, &test.columns())?;
     let place = options.set.join(&strip.sequence.name);
     refuse_replacing(&options.file, &place)?;
-    let sample = Sample {
+    let sample = FabricFields {
         name: options.name.clone(),
         areal_density: options.areal_density_kg_m2,
         thickness: options.thickness_m,
@@ -135,7 +135,7 @@ pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) ->
     let added =
         whole(|| add_to_set(&options.set, &sample, &strip.sequence, options.replace)).map_err(by_option)?;
     for notice in &notices {
-        warn(telling, &text::notice(notice));
+        warn(printing, &text::notice(notice));
     }
     let forces = forces(&strip.sequence);
     let (rows, branches) = (strip.rows(), strip.branches());
@@ -180,7 +180,7 @@ pub fn run(options: &StripOptions, telling: Telling, output: &mut impl Write) ->
         "free_length_m": strip.free_length,
         "notices": notices,
     });
-    tell(telling, output, &text, &json)?;
+    print_result(printing, output, &text, &json)?;
     Ok(Outcome::Done)
 }
 

@@ -4,10 +4,10 @@ use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::telling::{Telling, note_lines_above, tell, warn};
+use crate::printing::{Printing, note_lines_above, print_result, warn};
 use clap::{Args, ValueEnum};
 use cloth_data::curve_edit::largest_stress;
-use cloth_data::strip::{Column, ForceTable, Measure, read_force_table};
+use cloth_data::strip::{Column, Conversion, ForceTable, read_force_table};
 use cloth_fit::material::check::context;
 use cloth_sim::curve::soundness::{Finding, check};
 use cloth_sim::material::{Component, Compression, Model};
@@ -71,18 +71,18 @@ pub enum MeasureChoice {
 ///
 /// # Errors
 /// A bad table or option; I/O errors.
-pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) -> Result<Outcome, Failure> {
+pub fn run(options: &TableOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let tension = options.tension_n_per_m;
-    let (measure, component, model, words) = match options.measure {
+    let (conversion, component, model, words) = match options.measure {
         MeasureChoice::Green => {
-            (Measure::Green, Component::StretchWeft, Model::Stvk, "Green strain, for the model stvk")
+            (Conversion::Green, Component::StretchWeft, Model::Stvk, "Green strain, for the model stvk")
         }
         MeasureChoice::Engineering => {
             let words = "engineering strain, for the models soft-constraint and springs";
-            (Measure::Engineering, Component::StretchWeft, Model::SoftConstraint, words)
+            (Conversion::Engineering, Component::StretchWeft, Model::SoftConstraint, words)
         }
         MeasureChoice::Shear => {
-            (Measure::Shear { tension }, Component::Shear, Model::Stvk, "shear, for all models")
+            (Conversion::Shear { tension }, Component::Shear, Model::Stvk, "shear, for all models")
         }
     };
     let test = ForceTable {
@@ -91,16 +91,16 @@ pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) ->
         extension: options.extension.chosen(),
         force: options.force.clone(),
         rows: options.rows.clone(),
-        measure,
+        conversion,
     };
     let file = read_force_table(&options.file, &test)?;
-    note_lines_above(telling, &options.file, &test.columns())?;
+    note_lines_above(printing, &options.file, &test.columns())?;
     let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
     write("--out", &options.out, &options.file, &file.to_csv())?;
     let findings = check(&curve, &context(model, component, None));
     let defects: Vec<&Finding> = findings.iter().filter(|finding| finding.is_defect()).collect();
     for finding in &defects {
-        warn(telling, &format!("{finding}: {}", finding.consequence()));
+        warn(printing, &format!("{finding}: {}", finding.consequence()));
     }
     let strain = [file.strains[0], file.strains[file.strains.len() - 1]];
     let largest = largest_stress(&curve);
@@ -120,6 +120,6 @@ pub fn run(options: &TableOptions, telling: Telling, output: &mut impl Write) ->
         "largest_stress_n_per_m": largest,
         "sound": defects.is_empty(),
     });
-    tell(telling, output, &text, &json)?;
+    print_result(printing, output, &text, &json)?;
     Ok(Outcome::Done)
 }

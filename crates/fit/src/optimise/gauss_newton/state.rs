@@ -39,7 +39,7 @@ impl State {
         (&self.residual - residual).dot(&(&self.residual + residual)) / self.residual.norm_squared()
     }
 
-    /// The same for a step of the linear model.
+    /// Relative decrease that the linear model predicts for a step.
     pub(super) fn promise(&self, step: &DVector<f64>) -> f64 {
         let moved = &self.triangle.matrix * step;
         moved.dot(&(2.0 * &self.triangle.target - &moved)) / self.residual.norm_squared()
