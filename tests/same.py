@@ -5,6 +5,7 @@ On the four fabrics: fit, compare, validate, check; a drape and a flag; a quick 
 but for what may differ:
 
 * seconds, versions (`schema`, `program`), the path of the output folder
+* the column of seconds in a ranking; the study's text and plots over time (its CSV files are compared)
 * words: a string with a space in it (JSON, CSV), everything but the numbers in texts, labels in SVG
 * keys that were renamed: RENAMED, old to new
 * the page, which holds the data of report.json
@@ -20,6 +21,8 @@ SETS = ["cotton-denim", "cotton-satin", "rayon-spandex-knit", "wool-cotton"]
 RENAMED = {}
 SECONDS = re.compile(r"seconds|peak_memory|saving")
 NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+LAST_COLUMN = re.compile(r" *\S+$", re.MULTILINE)
+TIMED = re.compile(r"error-time|parts|stages|study\.")
 TIME = re.compile(r"[\d.]+ (?:s|ms|µs|min)\b|in [\d.]+ s|\d+ files?")
 
 
@@ -45,6 +48,9 @@ def run(program, out):
 
 def data(value, key=""):
     if isinstance(value, dict):
+        timed = [i for i, name in enumerate(value.get("columns", [])) if SECONDS.search(str(name))]
+        for row in value.get("rows", []) if timed else []:
+            row[timed[0]] = "0"
         pairs = ((RENAMED.get(k, k), v) for k, v in value.items() if k not in ("schema", "program"))
         return {k: 0 if SECONDS.search(k) else data(v, k) for k, v in pairs}
     if isinstance(value, list):
@@ -61,12 +67,16 @@ def table(text):
 
 
 def compared(path):
+    if TIMED.match(path.name) and path.suffix in (".txt", ".md", ".svg"):
+        return None
     if path.suffix == ".json":
         return data(json.loads(path.read_text()))
     if path.suffix == ".csv":
         return table(path.read_text())
     if path.suffix in (".txt", ".md"):
-        return NUMBER.findall(TIME.sub("", path.read_text()))
+        text = path.read_text()
+        text = LAST_COLUMN.sub("", text) if text.split("\n")[1:2] and text.split("\n")[1].endswith("seconds") else text
+        return NUMBER.findall(TIME.sub("", text))
     if path.suffix == ".svg":
         return re.sub(r">[^<]*<", "><", path.read_text())
     return None if path.suffix == ".html" else path.read_bytes()

@@ -19,7 +19,7 @@ pub mod strip;
 
 use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_fit::stage::report::CurveRow;
-use cloth_sim::material::Model;
+use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::{Diagonals, Grid};
 use nalgebra::{Isometry3, Vector3};
 use std::path::PathBuf;
@@ -55,17 +55,16 @@ impl UniformStretch<'_> {
         let frames = (0..=self.frames)
             .map(|index| {
                 let strain = self.largest * index as f64 / self.frames as f64;
-                let (stretch, factor) = match self.model {
-                    Model::Stvk => ((1.0 + 2.0 * strain).sqrt(), (1.0 + 2.0 * strain).sqrt()),
-                    Model::SoftConstraint | Model::Springs => (1.0 + strain, 1.0),
-                };
-                let force = Vector3::x() * ((self.law)(strain) * factor * side);
+                let measure = self.model.strain_measure(Component::StretchWeft);
+                let extension = measure.physical(strain).expect("a possible strain");
+                let load = measure.load(extension, |_| (self.law)(strain)).expect("a load");
+                let force = Vector3::x() * (load * side);
                 let cords =
                     if index == 0 { vec![] } else { vec![cord(0, noisy(-force)), cord(1, noisy(force))] };
                 Frame {
                     poses: vec![
                         Isometry3::identity(),
-                        Isometry3::translation((side - 2.0 * self.grip) * (stretch - 1.0), 0.0, 0.0),
+                        Isometry3::translation((side - 2.0 * self.grip) * extension, 0.0, 0.0),
                     ],
                     cords,
                     ..Frame::default()

@@ -25,7 +25,7 @@ pub struct Place {
     pub below: f64,
     /// Downward slope from the horizontal, rad.
     pub slope: f64,
-    /// HessianKind, 1/m.
+    /// Curvature, 1/m.
     pub curvature: f64,
 }
 

@@ -32,7 +32,7 @@ mod tests;
 mod toml_file;
 mod unit;
 
-pub use number::check_length;
+pub use number::{check_length, number};
 pub use source::{read_text, shortened, shown};
 
 pub use obj::{YarnAxes, read_mesh};

@@ -50,7 +50,7 @@ pub enum Command {
     /// Fit every curve that a set observes
     #[command(after_help = goal::FIT_EXAMPLE)]
     Fit(FitFlags),
-    /// Fit three models in four variants and rank them
+    /// Fit all models in four variants and rank them
     Compare(CompareOptions),
     /// Test fitted curves on motions and samples that the fit did not use
     Validate(ValidateOptions),

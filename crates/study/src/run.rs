@@ -55,7 +55,7 @@ impl std::fmt::Display for Ending {
 pub struct Run {
     /// Kind of the run.
     pub part: Part,
-    /// TestScene, or stage of a fit; `all` for the whole fit.
+    /// Scene, or stage of a fit; `all` for the whole fit.
     pub test: String,
     /// The cloth model.
     pub model: Model,

@@ -4,7 +4,7 @@
 ///
 /// # Errors
 /// The expected form.
-pub(super) fn number(text: &str) -> Result<f64, &'static str> {
+pub fn number(text: &str) -> Result<f64, &'static str> {
     if text.contains('\u{2212}') {
         return Err("a number with the ASCII minus sign (-), not the Unicode one");
     }

@@ -8,10 +8,10 @@ use crate::frame::Kind;
 use nalgebra::{Isometry3, Vector2, Vector3};
 
 /// Side of a small clip, m.
-const SIDE: f64 = 0.01;
+pub(super) const SIDE: f64 = 0.01;
 
 /// Mass of a small clip, kg (Miguel et al. 2012, §3).
-const MASS: f64 = 0.0019;
+pub(super) const MASS: f64 = 0.0019;
 
 /// The test. Its drive is the distance by which a pair is pulled apart, m: positive for the corners below left and
 /// above right, negative for the other two.

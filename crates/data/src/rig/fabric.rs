@@ -203,7 +203,10 @@ impl KnownFabric {
             return Err(file.invalid("name", "nothing", "the fabric's name"));
         }
         if self.model.is_of_springs() {
-            return Err(file.invalid("model", "springs", "stvk or soft-constraint, whose hinges bend"));
+            let hinged: Vec<&str> =
+                Model::ALL.iter().filter(|model| !model.is_of_springs()).map(|model| model.name()).collect();
+            let expected = format!("{}, whose hinges bend", hinged.join(" or "));
+            return Err(file.invalid("model", "springs", expected));
         }
         let [first, last] = self.overhang_m;
         if file.has("overhang_m[2]") || !(0.0 < first && first < last) {

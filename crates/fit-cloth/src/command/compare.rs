@@ -1,4 +1,4 @@
-//! `fit-cloth compare`: fits three models in four variants to one measurement set and ranks them.
+//! `fit-cloth compare`: fits all models in four variants to one measurement set and ranks them.
 
 use super::journal::{program, recalled};
 use super::kinds::{has_any, nothing};

@@ -1,5 +1,6 @@
 //! `fit-cloth import`: converts a laboratory's table into a measurement set or a curve.
 
+mod curve;
 pub mod selection;
 pub mod strip;
 pub mod table;

@@ -69,9 +69,13 @@ pub fn run(
         return Err(with_option(nothing(&options.on.set, &set, &kinds), "--kinds, --all").into());
     }
     if options.kinds.is_empty() && !options.all && kinds.len() == Kind::ALL.len() {
-        let taken = "using all tests of the set, since it has neither complex-shear nor corner-pull: for curves fitted \
-                     to these tests this is no validation";
-        warn(printing, taken);
+        let kinds: Vec<&str> =
+            Kind::ALL.iter().filter(|kind| kind.shows().is_empty()).map(|kind| kind.name()).collect();
+        let taken = format!(
+            "using all tests of the set, since it has neither {}: for curves fitted to these tests this is no validation",
+            kinds.join(" nor ")
+        );
+        warn(printing, &taken);
     }
     warn_of_defects(printing, &options.material.display().to_string(), &check_material(&material)?);
     let progress = Progress::new("validating", !printing.quiet);

@@ -2,7 +2,7 @@
 
 use crate::support::full_set;
 use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
-use cloth_sim::material::Model;
+use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
@@ -78,12 +78,11 @@ impl Uniform<'_> {
     /// Two bars apart: the force per width is σ times the derivative of strain with respect to stretch.
     fn stretched(&self, strain: f64) -> (Vec<Isometry3<f64>>, Vec<Vector3<f64>>) {
         let along = if self.kind == Kind::StretchWarp { Vector3::y() } else { Vector3::x() };
-        let (stretch, slope) = match self.model {
-            Model::Stvk => ((1.0 + 2.0 * strain).sqrt(), (1.0 + 2.0 * strain).sqrt()),
-            Model::SoftConstraint | Model::Springs => (1.0 + strain, 1.0),
-        };
-        let moved = Isometry3::from(Translation3::from(along * ((stretch - 1.0) * self.side)));
-        let force = along * ((self.law)(strain) * slope * self.side);
+        let measure = self.model.strain_measure(Component::StretchWeft);
+        let extension = measure.physical(strain).unwrap();
+        let load = measure.load(extension, |_| (self.law)(strain)).unwrap();
+        let moved = Isometry3::from(Translation3::from(along * (extension * self.side)));
+        let force = along * (load * self.side);
         (vec![Isometry3::identity(), moved], vec![-force, force])
     }
 

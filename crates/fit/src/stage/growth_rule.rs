@@ -9,7 +9,7 @@ pub(super) const SIGNIFICANT: f64 = 9.21;
 pub struct GrowthRule {
     /// Minimum relative decrease of the residual; default 1 %, as published, but of another [`ResidualMeasure`].
     pub gain: f64,
-    /// ResidualMeasure of the residual; default the root mean square; published its square.
+    /// Measure of the residual; default the root mean square; published its square.
     pub measure: ResidualMeasure,
     /// A decrease beyond chance pays however small its share; default true; published false.
     pub significance: bool,
@@ -17,7 +17,7 @@ pub struct GrowthRule {
     pub tries: usize,
 }
 
-/// ResidualMeasure of the size of residuals.
+/// Measures of the size of residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResidualMeasure {
     /// In newtons or metres.

@@ -90,7 +90,7 @@ impl fmt::Display for Severity {
 /// A defect of a curve, or a note on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// Flaw of finding.
+    /// The flaw.
     pub kind: Flaw,
     /// Strain interval, in the curve's own strain; an infinite end extends without limit.
     pub strains: [f64; 2],

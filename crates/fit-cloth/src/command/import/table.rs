@@ -1,17 +1,14 @@
 //! `fit-cloth import table`: converts force over elongation into stress over strain.
 
+use super::curve::{ENGINEERING, GREEN, print_curve};
 use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::write;
-use crate::printing::{Printing, note_lines_above, print_result, warn};
+use crate::printing::{Printing, note_lines_above};
 use clap::{Args, ValueEnum};
-use cloth_data::curve_edit::largest_stress;
 use cloth_data::strip::{Column, Conversion, ForceTable, read_force_table};
-use cloth_fit::material::check::context;
-use cloth_sim::curve::soundness::{Finding, check};
 use cloth_sim::material::{Component, Compression, Model};
-use serde_json::json;
 use std::io::Write;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -74,12 +71,9 @@ pub enum MeasureChoice {
 pub fn run(options: &TableOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let tension = options.tension_n_per_m;
     let (conversion, component, model, words) = match options.measure {
-        MeasureChoice::Green => {
-            (Conversion::Green, Component::StretchWeft, Model::Stvk, "Green strain, for the model stvk")
-        }
+        MeasureChoice::Green => (Conversion::Green, Component::StretchWeft, Model::Stvk, GREEN),
         MeasureChoice::Engineering => {
-            let words = "engineering strain, for the models soft-constraint and springs";
-            (Conversion::Engineering, Component::StretchWeft, Model::SoftConstraint, words)
+            (Conversion::Engineering, Component::StretchWeft, Model::SoftConstraint, ENGINEERING)
         }
         MeasureChoice::Shear => {
             (Conversion::Shear { tension }, Component::Shear, Model::Stvk, "shear, for all models")
@@ -97,29 +91,5 @@ pub fn run(options: &TableOptions, printing: Printing, output: &mut impl Write) 
     note_lines_above(printing, &options.file, &test.columns())?;
     let curve = file.curve(component, model, model.negative_strain(component, Compression::ZeroStrain))?;
     write("--out", &options.out, &options.file, &file.to_csv())?;
-    let findings = check(&curve, &context(model, component, None));
-    let defects: Vec<&Finding> = findings.iter().filter(|finding| finding.is_defect()).collect();
-    for finding in &defects {
-        warn(printing, &format!("{finding}: {}", finding.consequence()));
-    }
-    let strain = [file.strains[0], file.strains[file.strains.len() - 1]];
-    let largest = largest_stress(&curve);
-    let sound =
-        if defects.is_empty() { "sound" } else { "NOT sound: repair it with fit-cloth check --repair" };
-    let text = format!(
-        "{} rows, strain {:.4} to {:.4}, stress up to {largest:.4} N/m: {words}\n{sound}\nWritten to {}",
-        file.strains.len(),
-        strain[0],
-        strain[1],
-        options.out.display()
-    );
-    let json = json!({
-        "written": options.out.display().to_string(),
-        "rows": file.strains.len(),
-        "strain": strain,
-        "largest_stress_n_per_m": largest,
-        "sound": defects.is_empty(),
-    });
-    print_result(printing, output, &text, &json)?;
-    Ok(Outcome::Done)
+    print_curve(printing, output, &file, &curve, (component, model, words), &options.out)
 }
