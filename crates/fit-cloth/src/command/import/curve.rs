@@ -13,11 +13,6 @@ use serde_json::json;
 use std::io::Write;
 use std::path::Path;
 
-/// Green strain, in words.
-pub(super) const GREEN: &str = "Green strain, for the model stvk";
-/// Engineering strain, in words.
-pub(super) const ENGINEERING: &str = "engineering strain, for the models soft-constraint and springs";
-
 /// Checks a curve that was written, and prints its range and its defects.
 ///
 /// * `words` — its measure

@@ -1,6 +1,6 @@
 //! `fit-cloth import table`: converts force over elongation into stress over strain.
 
-use super::curve::{ENGINEERING, GREEN, print_curve};
+use super::curve::print_curve;
 use super::selection::{ExtensionOptions, column, rows};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -71,9 +71,12 @@ pub enum MeasureChoice {
 pub fn run(options: &TableOptions, printing: Printing, output: &mut impl Write) -> Result<Outcome, Failure> {
     let tension = options.tension_n_per_m;
     let (conversion, component, model, words) = match options.measure {
-        MeasureChoice::Green => (Conversion::Green, Component::StretchWeft, Model::Stvk, GREEN),
+        MeasureChoice::Green => {
+            (Conversion::Green, Component::StretchWeft, Model::Stvk, "Green strain, for the model stvk")
+        }
         MeasureChoice::Engineering => {
-            (Conversion::Engineering, Component::StretchWeft, Model::SoftConstraint, ENGINEERING)
+            let words = "engineering strain, for the models soft-constraint and springs";
+            (Conversion::Engineering, Component::StretchWeft, Model::SoftConstraint, words)
         }
         MeasureChoice::Shear => {
             (Conversion::Shear { tension }, Component::Shear, Model::Stvk, "shear, for all models")
