@@ -6,15 +6,15 @@
 //!  table  ▒     │
 //! ```
 //!
-//! The fit recovers the flexural rigidity within 3 % up to Γ = 30 and within 6 % at 100, without noise; with 0.075 mm
-//! within 10 %. The same holds for a nonlinear moment law, as the relative L2 error over the visited range.
+//! The fit recovers the flexural rigidity within 0.1 % up to Γ = 100 without noise, with 0.075 mm within 0.5 %; a law that
+//! bends within a sixteenth of the range, by nine points, within 2.5 % (relative L2 error over the visited range).
 
 use cloth_data::frame::Kind;
 use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Model};
-use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, between_rows};
+use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, POSITION_NOISE, SIDE, between_rows};
 use fit_cloth_tests::stress_error;
 
 const DENSITY: f64 = 0.2;
@@ -32,10 +32,12 @@ fn fit_bending(
         areal_density: DENSITY,
         moment,
         overhangs: &overhangs,
+        size: [SIDE; 2],
         measured: [100, 100],
-        noise,
+        noise: noise.map(|seed| (POSITION_NOISE, seed)),
     };
-    let settings = Settings { variant, model, ..Settings::default() };
+    // The law that is no line bends within a sixteenth of the range.
+    let settings = Settings { variant, model, points: 9, ..Settings::default() };
     fit(&cantilever.measure(), &[Stage::Bend], &Knowledge::default(), &settings, &mut Watch::default())
         .unwrap()
 }
@@ -46,9 +48,9 @@ fn rigidity(gamma: f64) -> f64 {
 
 #[test]
 fn the_heavy_elastica_comes_back() {
-    for (gamma, exact) in [(1.0, 0.03), (10.0, 0.03), (30.0, 0.03), (100.0, 0.06)] {
+    for (gamma, exact) in [(1.0, 0.001), (10.0, 0.001), (30.0, 0.001), (100.0, 0.001)] {
         let truth = rigidity(gamma);
-        for (noise, allowed) in [(None, exact), (Some(3), 0.1)] {
+        for (noise, allowed) in [(None, exact), (Some(3), 0.005)] {
             let moment = |curvature: f64| truth * curvature;
             let report = fit_bending(Kind::BendWeft, &moment, noise, Variant::Linear, Model::Stvk);
             let stage = report.stage(Component::BendWeft).unwrap();
@@ -77,7 +79,7 @@ fn a_moment_law_that_is_no_line_comes_back() {
         (Kind::BendWarp, Component::BendWarp),
         (Kind::BendBias, Component::BendDiagonal),
     ] {
-        for (noise, allowed) in [(None, 0.05), (Some(5), 0.1)] {
+        for (noise, allowed) in [(None, 0.01), (Some(5), 0.025)] {
             let report = fit_bending(kind, &moment, noise, Variant::Orthotropic, Model::Stvk);
             let stage = report.stage(component).unwrap();
             let error = stress_error(&stage.curve.samples, &moment);

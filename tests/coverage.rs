@@ -159,16 +159,26 @@ fn bands_of_shear_carry_what_stretch_does_not_know_in_full() {
 
 const DENSITY: f64 = 0.2;
 
-/// A square pushed over an edge, with shapes observed at the nodes of the simulation.
-fn overhanging(kind: Kind, nodes: usize) -> Sequence {
-    let rigidity = DENSITY * GRAVITY * 0.085f64.powi(3) / 30.0;
+/// A square pushed over an edge, with shapes observed at nodes of the default grid.
+///
+/// * `share` — of the rigidity at Γ = 30
+fn overhanging(kind: Kind, nodes: usize, share: f64) -> Sequence {
+    let rigidity = share * DENSITY * GRAVITY * 0.085f64.powi(3) / 30.0;
     let cells = nodes - 1;
     let overhangs: Vec<f64> =
         (0..5).map(|i| ((cells * (16 + 2 * i) / 30) as f64 + 0.4) * SIDE / cells as f64).collect();
     let moment = |curvature: f64| rigidity * curvature;
     let measured = [nodes; 2];
-    Cantilever { kind, areal_density: DENSITY, moment: &moment, overhangs: &overhangs, measured, noise: None }
-        .sequence()
+    Cantilever {
+        kind,
+        areal_density: DENSITY,
+        moment: &moment,
+        overhangs: &overhangs,
+        size: [SIDE; 2],
+        measured,
+        noise: None,
+    }
+    .sequence()
 }
 
 /// Stiffness of hinges at Γ = 30.
@@ -190,8 +200,8 @@ fn bending_alone(size: Size, points: usize) {
         .collect();
     let mut truth = known.clone();
     truth.set(weft.0, weft.1);
-    let settings = Settings { nodes: Some([size.bending; 2]), points, ..Settings::default() };
-    let nominal = weightless("sheet", vec![overhanging(Kind::BendWeft, size.bending)]);
+    let settings = Settings { points, ..Settings::default() };
+    let nominal = weightless("sheet", vec![overhanging(Kind::BendWeft, size.bending, 1.0)]);
     let exact = simulated(&nominal, &truth, &settings);
     let plan = stage::bend::plan(&[Component::BendWeft], 1);
     let held = size.mean(|seed| {
@@ -228,11 +238,10 @@ fn all_bending(size: Size) {
         let (component, curve) = constant(component, stiffness);
         truth.set(component, curve);
     });
-    let settings =
-        Settings { nodes: Some([size.bending; 2]), variant: Variant::Linear, ..Settings::default() };
-    let kinds = [Kind::BendWeft, Kind::BendWarp, Kind::BendBias];
-    let nominal =
-        weightless("sheet", kinds.into_iter().map(|kind| overhanging(kind, size.bending)).collect());
+    let settings = Settings { variant: Variant::Linear, ..Settings::default() };
+    let kinds = [(Kind::BendWeft, 1.0), (Kind::BendWarp, 0.4), (Kind::BendBias, 0.6)];
+    let sequences = kinds.into_iter().map(|(kind, share)| overhanging(kind, size.bending, share));
+    let nominal = weightless("sheet", sequences.collect());
     let exact = simulated(&nominal, &truth, &settings);
     let shares: Vec<[f64; 3]> = (0..size.seeds)
         .map(|seed| {

@@ -16,7 +16,7 @@ use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Model};
-use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, SIDE, between_rows};
+use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, POSITION_NOISE, SIDE, between_rows};
 use fit_cloth_tests::{UniformStretch, stress_error};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -81,8 +81,9 @@ fn vertices_seen_elsewhere_hardly_move_the_curve() {
             areal_density: 0.2,
             moment: &moment,
             overhangs: &overhangs,
+            size: [SIDE; 2],
             measured: [measured; 2],
-            noise: Some(4),
+            noise: Some((POSITION_NOISE, 4)),
         };
         let mut set = cantilever.measure();
         let clean = set.clone();

@@ -13,7 +13,7 @@ use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Plan, Settings, Watch, bend, fit, shear, stretch};
 use cloth_sim::material::{Component, Model};
 use fit_cloth_tests::UniformStretch;
-use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, between_rows};
+use fit_cloth_tests::cantilever::{Cantilever, GRAVITY, POSITION_NOISE, SIDE, between_rows};
 use fit_cloth_tests::picture_frame::PictureFrame;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -83,8 +83,9 @@ fn bending_ends_in_one_optimum() {
             areal_density: 0.2,
             moment: &|curvature| rigidity * curvature,
             overhangs: &overhangs,
+            size: [SIDE; 2],
             measured: [50, 50],
-            noise: Some(4),
+            noise: Some((POSITION_NOISE, 4)),
         };
         one_optimum(&cantilever.measure(), &bend::plan(&[component], 1));
     }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod analytic;
+mod bending_laws;
 mod bias;
 mod cantilever;
 mod drape;

@@ -12,7 +12,7 @@
 use cloth_fit::optimise::gauss_newton::{
     Evaluation, LinearConstraints, Options, Outcome, Residuals, minimise,
 };
-use cloth_fit::optimise::uncertainty::{Covariance, Scatter};
+use cloth_fit::optimise::uncertainty::{Covariance, NoiseSource, Scatter};
 use fit_cloth_tests::data;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde_json::Value;
@@ -134,7 +134,7 @@ impl Problem {
         let Ok(outcome) = minimise(self, &from, &domain, &Options::default(), &mut |_| {});
         let rank = Covariance::rank_of(&outcome.jacobian);
         // The points are unordered, and the residual is pure noise: s² = ‖r‖²/(n − p).
-        let scatter = Scatter::new(&outcome.residual, &outcome.jacobian, rank, &[], None);
+        let scatter = Scatter::new(&outcome.residual, &outcome.jacobian, rank, NoiseSource::Neighbours(&[]));
         let deviations = Covariance::new(&outcome.jacobian, &scatter).standard_deviations();
         Comparison {
             name: self.name,

@@ -17,7 +17,7 @@ pub const GRAVITY: f64 = 9.81;
 /// Standard deviation of each vertex coordinate in noisy sets, m.
 pub const POSITION_NOISE: f64 = 7.5e-5;
 
-/// A 100 mm square pushed off a table edge along x; the edge runs along y through the origin.
+/// A rectangle pushed off a table edge along x; the edge runs along y through the origin.
 ///
 /// ```text
 ///   z │  rest       frames
@@ -37,10 +37,12 @@ pub struct Cantilever<'a> {
     pub moment: &'a dyn Fn(f64) -> f64,
     /// Overhangs of the frames after the first, m.
     pub overhangs: &'a [f64],
+    /// Extent outward and along the edge, m.
+    pub size: [f64; 2],
     /// Columns and rows of the measured mesh.
     pub measured: [usize; 2],
-    /// Seed of [`POSITION_NOISE`], which is also declared to the fit; `None` = exact.
-    pub noise: Option<u64>,
+    /// Standard deviation of each vertex coordinate, m, which is also declared to the fit, and a seed; `None` = exact.
+    pub noise: Option<(f64, u64)>,
 }
 
 impl Cantilever<'_> {
@@ -51,8 +53,8 @@ impl Cantilever<'_> {
     pub fn measure(&self) -> MeasurementSet {
         let fabric = Fabric {
             name: "heavy elastica".into(),
-            width_m: SIDE,
-            height_m: SIDE,
+            width_m: self.size[0],
+            height_m: self.size[1],
             areal_density_kg_m2: self.areal_density,
             thickness_m: None,
             source: None,
@@ -67,7 +69,8 @@ impl Cantilever<'_> {
     /// As [`measure`](Self::measure).
     pub fn sequence(&self) -> Sequence {
         let [columns, rows] = self.measured;
-        let grid = Grid { columns, rows, width: SIDE, height: SIDE, diagonals: Diagonals::Alternating };
+        let [width, height] = self.size;
+        let grid = Grid { columns, rows, width, height, diagonals: Diagonals::Alternating };
         let mut mesh = grid.mesh().expect("a grid of some nodes");
         let flat = mesh.material.clone();
         let turn = Rotation2::new(match self.kind {
@@ -78,7 +81,7 @@ impl Cantilever<'_> {
         });
         mesh.material.iter_mut().for_each(|material| *material = turn * *material);
         mesh.positions.iter_mut().for_each(|position| *position += Vector3::new(0.2, 0.0, 0.05));
-        let mut random = self.noise.map(StdRng::seed_from_u64);
+        let mut random = self.noise.map(|(_, seed)| StdRng::seed_from_u64(seed));
         let overhangs = [0.0].iter().chain(self.overhangs);
         let frame = |&overhang: &f64| Frame {
             positions: Some(self.shape(&flat, overhang, &mut random)),
@@ -89,7 +92,7 @@ impl Cantilever<'_> {
             name: self.kind.to_string(),
             kind: self.kind,
             gravity: Vector3::new(0.0, 0.0, -GRAVITY),
-            noise: self.noise.map(|_| Noise { position_m: Some(POSITION_NOISE), force_n: None }),
+            noise: self.noise.map(|(noise, _)| Noise { position_m: Some(noise), force_n: None }),
             force_direction: None,
             table: Some(Table {
                 edge_point_m: [0.0; 3],
@@ -104,12 +107,12 @@ impl Cantilever<'_> {
 
     /// Position of every vertex, from its place on the flat square.
     fn shape(&self, flat: &[Vector2<f64>], overhang: f64, random: &mut Option<StdRng>) -> Vec<Vector3<f64>> {
-        assert!((0.0..=SIDE).contains(&overhang), "an overhang of {overhang} m");
+        assert!((0.0..=self.size[0]).contains(&overhang), "an overhang of {overhang} m");
         let hanging =
             (overhang > 0.0).then(|| Elastica::solve(overhang, self.areal_density * GRAVITY, self.moment));
         let place = |p: &Vector2<f64>| {
-            let beyond = p.x - (SIDE - overhang);
-            let across = p.y - SIDE / 2.0;
+            let beyond = p.x - (self.size[0] - overhang);
+            let across = p.y - self.size[1] / 2.0;
             match &hanging {
                 Some(shape) if beyond > 0.0 => {
                     let place = shape.at(beyond);
@@ -119,7 +122,10 @@ impl Cantilever<'_> {
             }
         };
         let mut noise = |_, _| match random {
-            Some(random) => POSITION_NOISE * Distribution::<f64>::sample(&StandardNormal, random),
+            Some(random) => {
+                self.noise.map_or(0.0, |(noise, _)| noise)
+                    * Distribution::<f64>::sample(&StandardNormal, random)
+            }
             None => 0.0,
         };
         flat.iter().map(|p| place(p) + Vector3::from_fn(&mut noise)).collect()
@@ -140,9 +146,9 @@ mod tests {
 
     const RIGIDITY: f64 = 2e-5;
 
-    fn cantilever<'a>(kind: Kind, overhangs: &'a [f64], noise: Option<u64>) -> Cantilever<'a> {
+    fn cantilever<'a>(kind: Kind, overhangs: &'a [f64], noise: Option<(f64, u64)>) -> Cantilever<'a> {
         let moment = &|curvature: f64| RIGIDITY * curvature;
-        Cantilever { kind, areal_density: 0.2, moment, overhangs, measured: [81, 61], noise }
+        Cantilever { kind, areal_density: 0.2, moment, overhangs, size: [SIDE; 2], measured: [81, 61], noise }
     }
 
     #[test]
@@ -214,7 +220,7 @@ mod tests {
     #[test]
     fn noise_is_as_large_as_it_says_and_the_same_again() {
         let exact = cantilever(Kind::BendWeft, &[0.05, 0.08], None).sequence();
-        let noisy = |seed| cantilever(Kind::BendWeft, &[0.05, 0.08], Some(seed)).sequence();
+        let noisy = |seed| cantilever(Kind::BendWeft, &[0.05, 0.08], Some((POSITION_NOISE, seed))).sequence();
         let sequence = noisy(3);
         assert_eq!(sequence.noise, Some(Noise { position_m: Some(POSITION_NOISE), force_n: None }));
         assert_eq!(sequence, noisy(3));
@@ -229,7 +235,7 @@ mod tests {
     #[test]
     fn it_is_a_set_that_a_folder_can_hold() {
         let folder = tempfile::tempdir().unwrap();
-        let set = cantilever(Kind::BendBias, &[0.05], Some(1)).measure();
+        let set = cantilever(Kind::BendBias, &[0.05], Some((POSITION_NOISE, 1))).measure();
         write_set(&folder.path().join("set"), &set).unwrap();
         let read = read_set(&folder.path().join("set")).unwrap();
         assert_eq!((read.fabric, read.sequences[0].table), (set.fabric, set.sequences[0].table));

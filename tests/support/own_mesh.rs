@@ -63,7 +63,8 @@ pub fn simulated(nominal: &MeasurementSet, curves: &Curves, settings: &Settings)
     let mut set = nominal.clone();
     for (sequence, exact) in nominal.sequences.iter().zip(&mut set.sequences) {
         equilibria(nominal, sequence, curves, settings, |settled, forces| {
-            let Settled { replica, frame, x, .. } = settled;
+            let Settled { replica, frame, x, edge, .. } = settled;
+            let x = replica.displayed(frame, x, edge);
             let out = replica.specimen.frame.rotation.inverse();
             let exact = &mut exact.frames[frame.index];
             exact.cords = frame

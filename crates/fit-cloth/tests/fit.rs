@@ -81,6 +81,7 @@ fn fit_finds_every_curve_that_is_shown_and_says_which_is_not() {
 fn the_material_file_gives_every_curve_back_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let set = support::full_set();
+    let mut extrapolated = false;
     for model in Model::ALL {
         let settings = Settings { model, nodes: Some([9, 9]), points: 2, ..Settings::default() };
         let known = Knowledge::default();
@@ -97,8 +98,9 @@ fn the_material_file_gives_every_curve_back_exactly() {
             assert_eq!(told, !stage.interventions.none(), "{}", text::stage(stage, false));
             assert_eq!(read.curves[&stage.components[0]].interventions, stage.interventions);
         }
-        assert!(report.stages.iter().any(|stage| !stage.interventions.share_extrapolated.is_empty()));
+        extrapolated |= report.stages.iter().any(|stage| !stage.interventions.share_extrapolated.is_empty());
     }
+    assert!(extrapolated);
 }
 
 #[test]

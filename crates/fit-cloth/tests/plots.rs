@@ -220,7 +220,9 @@ fn every_frame_off_a_table_has_both_profiles() {
 #[test]
 fn shapes_stand_beside_equilibria_with_the_forces_on_their_clips() {
     let check = |figure: Figure, clips: usize| {
-        assert_eq!(figure.missing(&["captured", "equilibrium"]), [""; 0]);
+        assert_eq!(figure.missing(&["captured"]), [""; 0]);
+        // Followed by "one of several", where a sheet buckles either way.
+        assert!(figure.texts().iter().any(|text| text.content.starts_with("equilibrium")), "{}", figure.name);
         assert!(figure.texts().iter().any(|text| text.content.contains(", stvk: frame ")), "{}", figure.name);
         let tables = if clips == 0 { 2 } else { 0 };
         assert_eq!(figure.count("polygon", &[]), 2 * FACES + tables, "{}", figure.name);
@@ -249,7 +251,7 @@ fn residuals_stand_at_every_node_five_times_as_long() {
     let check = |figure: Figure| {
         let texts = figure.texts();
         let told = |part: &str| texts.iter().any(|text| text.content.contains(part));
-        assert!(told("measured − simulated ×5, rms 0.") && told(" mm") && told(": frame "), "{texts:?}");
+        assert!(told("measured − simulated ×5, rms ") && told(" mm") && told(": frame "), "{texts:?}");
         assert!(told("residual: "), "{texts:?}");
         let arrows = figure.count("polyline", &[("stroke", MEASURED), ("stroke-width", "2")]);
         let dots = figure.count("circle", &[("fill", MEASURED)]);

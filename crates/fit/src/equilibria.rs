@@ -13,6 +13,8 @@
 //! Source: Miguel et al. 2012, eqs. 7–9, without the μI that they keep in K, except where equilibria are found by
 //! Levenberg–Marquardt (docs/model.md).
 
+mod correction;
+mod elimination;
 mod frames;
 mod meter;
 mod observation;
@@ -21,7 +23,6 @@ mod solve;
 mod state;
 mod task;
 mod unknowns;
-mod whitening;
 
 pub use frames::{DroppedFrame, Equilibria, Settled};
 pub use meter::{Counters, Meter};

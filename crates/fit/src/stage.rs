@@ -17,6 +17,7 @@ pub mod interventions;
 pub mod knowledge;
 mod level;
 mod plan;
+mod posterior;
 pub mod report;
 mod settings;
 pub mod shapes;

@@ -185,6 +185,12 @@ impl Cloth {
         &self.free
     }
 
+    /// Unknown of a coordinate; `None` if it is held.
+    pub fn unknown(&self, coordinate: usize) -> Option<usize> {
+        let place = self.free.binary_search_by_key(&coordinate, |&(coordinate, _)| coordinate);
+        place.ok().map(|place| self.free[place].1)
+    }
+
     /// Sums a coordinate quantity, such as a gradient, over each unknown. For a guided node only the part along its
     /// free directions remains.
     pub fn collect(&self, coordinates: &[f64], unknowns: &mut [f64]) {

@@ -113,7 +113,10 @@ impl TestScene {
         let frames = kept.map(|(place, (_, clips, x))| BalancedFrame {
             place,
             forces: replica.frames[place].forces.iter().map(|component| component.of(&clips)).collect(),
-            x,
+            x: {
+                let frame = &replica.frames[place];
+                replica.displayed(frame, &x, frame.edge().as_ref()).into_owned()
+            },
         });
         Ok(Balanced { frames: frames.collect(), ending: ending(&found), spent, replica })
     }

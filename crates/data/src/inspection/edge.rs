@@ -23,9 +23,20 @@ const REFUSED: f64 = 0.1;
 /// than this, m.
 const LEAST: f64 = 1e-3;
 
+/// And by so many standard errors of the median over frames: a short overhang drops by little more than the noise.
+const UNSURE: f64 = 3.0;
+
 /// Largest height difference between flat cloth and edge, m, in addition to the thickness: tables and axes are
 /// slightly off.
 const LEVEL: f64 = 2e-3;
+
+/// Standard error of a median, from the median deviation of its values; 0 of fewer than three.
+fn standard_error(values: &[f64]) -> f64 {
+    let Some(middle) = median(values.to_vec()).filter(|_| values.len() > 2) else { return 0.0 };
+    let deviation = median(values.iter().map(|value| (value - middle).abs()).collect()).unwrap_or(0.0);
+    // 1.4826 MAD is the standard deviation of normal values, √(π/2) σ/√n the standard error of their median.
+    1.4826 * deviation * (0.5 * std::f64::consts::PI / values.len() as f64).sqrt()
+}
 
 /// Doubts or refuses a sequence whose sheet starts to hang away from the table edge, or does not lie on the table.
 pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
@@ -41,6 +52,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
         apart = apart.max(begin.apart);
     }
     let frames = offs.len();
+    let unsure = UNSURE * standard_error(&offs);
     let (Some(off), Some(length), Some(level)) = (median(offs), median(lengths), median(levels)) else {
         return;
     };
@@ -56,7 +68,7 @@ pub(super) fn check(fabric: &Fabric, sequence: &mut Sequence, notices: &mut Vec<
             "an edge at the height of the cloth, in the axes of positions.npy",
         ));
     }
-    if off.abs() <= f64::max(0.5 * apart, LEAST) {
+    if off.abs() <= f64::max(0.5 * apart, LEAST) + unsure {
         return;
     }
     let refused = off.abs() > REFUSED * length;

@@ -25,7 +25,7 @@ pub struct SetFlags {
     /// append -compare and -validation]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Nodes of the simulation grid, columns x rows [default: as many cells as 25x25 nodes have, near square]
+    /// Nodes of the simulation grid, columns x rows [default: as many cells as 25x25 nodes have, near square; off a table 48 or more cells along the overhang]
     #[arg(long, value_parser = parse_nodes)]
     pub nodes: Option<[usize; 2]>,
     /// Number of threads, 1 to 1024; results do not depend on it [default: one per core]

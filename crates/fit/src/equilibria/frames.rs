@@ -1,11 +1,12 @@
 //! The frames of one stage under unknown curves.
 
 use super::meter::Meter;
+use super::observation::Observation;
 use super::state::{State, start_state};
 use super::task::Task;
 use super::unknowns::{Unknown, Unknowns};
 use crate::optimise::robust::Robust;
-use crate::twin::replica::{Replica, ReplicaFrame};
+use crate::twin::replica::{EdgePose, Replica, ReplicaFrame};
 use cloth_sim::equilibrium::{Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use rayon::prelude::*;
@@ -33,6 +34,8 @@ pub struct Settled<'s> {
     pub frame: &'s ReplicaFrame,
     /// Its equilibrium, 3 stacked coordinates per node, m.
     pub x: &'s [f64],
+    /// Pose of the sheet at a table's edge.
+    pub edge: Option<&'s EdgePose>,
     /// The solve met an unstable equilibrium and left it: the frame may have several equilibria.
     pub multi_stable: bool,
 }
@@ -45,6 +48,8 @@ pub(super) type SolverPool<'a> = Mutex<Vec<Solver<'a>>>;
 /// A stage's replicas under unknown curves.
 pub struct Equilibria<'a> {
     pub(super) replicas: &'a [Replica],
+    /// Replicas on finer grids, by which simulated values are corrected; empty = not corrected.
+    pub(super) finer: &'a [Replica],
     /// Per replica, per cloth.
     pub(super) solvers: Vec<Vec<SolverPool<'a>>>,
     pub(super) task: Task,
@@ -76,6 +81,7 @@ impl<'a> Equilibria<'a> {
         let pools = |replica: &Replica| replica.cloths.iter().map(|_| Mutex::default()).collect();
         let mut simulation = Self {
             replicas,
+            finer: &[],
             solvers: replicas.iter().map(pools).collect(),
             task,
             unknowns,
@@ -108,12 +114,6 @@ impl<'a> Equilibria<'a> {
         self.unknowns = unknowns;
         // Sensitivities belong to the old control values.
         self.states.iter_mut().for_each(|state| state.sensitivity.clear());
-        self.states.iter_mut().for_each(|state| state.whitening = None);
-    }
-
-    /// True if position errors of held lines enter the residuals.
-    pub fn is_whitened(&self) -> bool {
-        self.states.iter().any(|state| state.whitening.is_some())
     }
 
     /// The unknowns at the last evaluation.
@@ -123,7 +123,7 @@ impl<'a> Equilibria<'a> {
 
     /// Number of compared measurements, over all frames in use.
     pub fn measurements(&self) -> usize {
-        self.settled().map(|s| self.task.objective.observations(s.replica, s.frame).len()).sum()
+        self.settled().map(|s| self.observations(s.frame).len()).sum()
     }
 
     /// True if the noise of every sequence is known; residuals are then in units of it.
@@ -135,6 +135,11 @@ impl<'a> Equilibria<'a> {
     pub fn unit(&self) -> f64 {
         let scales = self.replicas.iter().map(|replica| self.scale(replica));
         scales.sum::<f64>() / self.replicas.len() as f64
+    }
+
+    /// The compared quantities of a frame.
+    pub(super) fn observations(&self, frame: &ReplicaFrame) -> Vec<Observation> {
+        self.task.objective.observations(frame, self.task.robust.is_some())
     }
 
     /// The task of the simulation.
@@ -154,6 +159,7 @@ impl<'a> Equilibria<'a> {
             replica: &replicas[replica],
             frame: &replicas[replica].frames[frame],
             x: &state.x,
+            edge: state.edge.as_ref(),
             multi_stable: state.escaped,
         })
     }

@@ -1,14 +1,14 @@
 //! Observations: the measured quantities of an equilibrium that a fit compares.
 //!
 //! ```text
-//! quantity            simulated            derivative by the unknowns
-//! force component     Σ parts · F_c        Σ parts · dF_c/dk,   dF_c/dk = ∂F_c/∂k + (∂F_c/∂x) dx/dk
-//! coordinate          x_i                  dx_i/dk
+//! quantity            simulated                      derivative by the unknowns
+//! force component     Σ parts · F_c                  Σ parts · dF_c/dk,   dF_c/dk = ∂F_c/∂k + (∂F_c/∂x) dx/dk
+//! coordinate          Σ w x_n, placed by the edge    Σ w dx_n/dk
 //! ```
 //!
 //! A new quantity is one more case here; what is minimised asks nothing else of it.
 
-use crate::twin::replica::{Replica, ReplicaFrame};
+use crate::twin::replica::{EdgePose, MeasuredPoint, Replica, ReplicaFrame};
 use cloth_sim::cloth::Cloth;
 use cloth_sim::equilibrium::Solver;
 use nalgebra::Vector3;
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub enum Objective {
     /// The measured components of clip forces, N.
     Forces,
-    /// The coordinates of the free nodes that were seen, m.
+    /// The coordinates of the measured points, m.
     Positions,
 }
 
@@ -37,8 +37,8 @@ pub(super) struct Observation {
 enum Quantity {
     /// Index among the frame's force components, its clip, and which of the clip's it is.
     Force { index: usize, clip: usize, number: usize },
-    /// Index among stacked coordinates, and its unknown.
-    Coordinate { coordinate: usize, unknown: usize },
+    /// Index among the frame's points or merged points, and an axis.
+    Coordinate { point: usize, axis: usize, merged: bool },
 }
 
 impl Objective {
@@ -51,9 +51,11 @@ impl Objective {
     }
 
     /// Observations of one frame.
-    pub(super) fn observations(self, replica: &Replica, frame: &ReplicaFrame) -> Vec<Observation> {
-        match (self, &frame.observed) {
-            (Self::Forces, _) => {
+    ///
+    /// * `each` — every point counts by itself, as where some are outliers; else points off a table are merged
+    pub(super) fn observations(self, frame: &ReplicaFrame, each: bool) -> Vec<Observation> {
+        match self {
+            Self::Forces => {
                 let component =
                     |(index, force): (usize, &crate::twin::replica::ForceComponent)| Observation {
                         quantity: Quantity::Force { index, clip: force.clip, number: force.number },
@@ -62,27 +64,48 @@ impl Objective {
                     };
                 frame.forces.iter().enumerate().map(component).collect()
             }
-            (Self::Positions, Some(observed)) => {
-                let coordinate = |(unknown, coordinate): (usize, usize)| Observation {
-                    quantity: Quantity::Coordinate { coordinate, unknown },
-                    measured: observed[coordinate],
-                    spread: replica.spread[coordinate / 3],
-                };
-                replica.seen_unknowns(frame).map(coordinate).collect()
-            }
-            (Self::Positions, None) => Vec::new(),
+            Self::Positions => match &frame.merging {
+                Some(merging) if !each => {
+                    let points = merging.points.iter().enumerate();
+                    points.flat_map(|(index, point)| coordinates_of(frame, point, index, true)).collect()
+                }
+                _ => coordinates(frame, f64::INFINITY),
+            },
         }
     }
 }
 
+/// Coordinates of a frame's points up to a distance past the edge of a table, m.
+pub(super) fn coordinates(frame: &ReplicaFrame, reach: f64) -> Vec<Observation> {
+    let near = |point: &MeasuredPoint| {
+        frame.overhang.as_ref().is_none_or(|overhang| overhang.past_edge(point) <= reach)
+    };
+    let points = frame.points.iter().enumerate().filter(|(_, point)| near(point));
+    points.flat_map(|(index, point)| coordinates_of(frame, point, index, false)).collect()
+}
+
+fn coordinates_of<'f>(
+    frame: &'f ReplicaFrame,
+    point: &'f MeasuredPoint,
+    index: usize,
+    merged: bool,
+) -> impl Iterator<Item = Observation> + 'f {
+    frame.compared_axes().iter().map(move |&axis| Observation {
+        quantity: Quantity::Coordinate { point: index, axis, merged },
+        measured: point.position[axis],
+        spread: point.spread,
+    })
+}
+
 /// A frame in equilibrium, with the derivatives of its shape and clip forces.
 pub(super) struct Balance<'a> {
+    cloth: &'a Cloth,
     frame: &'a ReplicaFrame,
     x: &'a [f64],
-    unknowns: usize,
+    edge: Option<EdgePose>,
     /// Of every group of held nodes, N.
     clip_forces: &'a [Vector3<f64>],
-    /// dx/dk: one column of unknowns a control value.
+    /// dx/dk: one column of unknowns a control value; then dx/dθ of an edge's slope.
     sensitivity: &'a [f64],
     /// dF/dk of every group of held nodes, a list a control value.
     force_slopes: Vec<Vec<Vector3<f64>>>,
@@ -90,12 +113,14 @@ pub(super) struct Balance<'a> {
 
 impl<'a> Balance<'a> {
     /// * `columns` — ∂g/∂k, 3 a node, one a control value
-    /// * `sensitivity` — dx/dk
+    /// * `sensitivity` — dx/dk, then dx/dθ of an edge's slope
+    #[expect(clippy::too_many_arguments, reason = "the parts of a frame in equilibrium")]
     pub(super) fn new(
         solver: &Solver<'_>,
-        cloth: &Cloth,
+        cloth: &'a Cloth,
         frame: &'a ReplicaFrame,
         x: &'a [f64],
+        edge: Option<EdgePose>,
         clip_forces: &'a [Vector3<f64>],
         columns: &[Vec<f64>],
         sensitivity: &'a [f64],
@@ -112,7 +137,12 @@ impl<'a> Balance<'a> {
                 .collect()
         });
         let force_slopes = slopes.collect();
-        Self { frame, x, unknowns, clip_forces, sensitivity, force_slopes }
+        Self { cloth, frame, x, edge, clip_forces, sensitivity, force_slopes }
+    }
+
+    /// Number of the frame's own unknowns.
+    pub(super) fn owned(&self) -> usize {
+        self.edge.map_or(0, |_| EdgePose::UNKNOWNS)
     }
 }
 
@@ -121,23 +151,48 @@ impl Observation {
     pub(super) fn simulated(&self, balance: &Balance<'_>) -> f64 {
         match self.quantity {
             Quantity::Force { index, .. } => balance.frame.forces[index].of(balance.clip_forces),
-            Quantity::Coordinate { coordinate, .. } => balance.x[coordinate],
+            Quantity::Coordinate { point, axis, merged } => {
+                point_of(balance.frame, point, merged).placed(balance.x, balance.edge.as_ref(), axis)
+            }
         }
     }
 
-    /// Its derivative by one control value.
-    pub(super) fn derivative(&self, balance: &Balance<'_>, value: usize) -> f64 {
+    /// Fills in its derivatives by the control values, then by the frame's own unknowns.
+    pub(super) fn differentiate(&self, balance: &Balance<'_>, by_value: &mut [f64], own: &mut [f64]) {
         match self.quantity {
-            Quantity::Force { index, .. } => balance.frame.forces[index].of(&balance.force_slopes[value]),
-            Quantity::Coordinate { unknown, .. } => balance.sensitivity[value * balance.unknowns + unknown],
+            Quantity::Force { index, .. } => {
+                let force = &balance.frame.forces[index];
+                by_value.iter_mut().zip(&balance.force_slopes).for_each(|(d, slopes)| *d = force.of(slopes));
+            }
+            Quantity::Coordinate { point, axis, merged } => {
+                let point = point_of(balance.frame, point, merged);
+                let mut columns = balance.sensitivity.chunks_exact(balance.cloth.unknowns().max(1));
+                by_value.iter_mut().zip(&mut columns).for_each(|(d, dx)| *d = point.of_unknowns(dx, axis));
+                if let (Some(edge), Some(overhang), Some(by_slope)) =
+                    (balance.edge, &balance.frame.overhang, columns.next())
+                {
+                    own.fill(0.0);
+                    own[axis / 2] = point.place;
+                    own[2 + axis / 2] = point.across;
+                    // The held lines turn with the slope.
+                    own[4] = point.of_unknowns(by_slope, axis) + overhang.turned(point, edge.slope)[axis / 2];
+                }
+            }
         }
     }
 
     /// Source: observations of one source follow one another through a sequence's frames.
-    pub(super) fn source(&self) -> [usize; 2] {
+    pub(super) fn source(&self, frame: &ReplicaFrame) -> [usize; 2] {
         match self.quantity {
             Quantity::Force { clip, number, .. } => [clip, number],
-            Quantity::Coordinate { coordinate, .. } => [coordinate / 3, coordinate % 3],
+            Quantity::Coordinate { point, axis, merged } => [point_of(frame, point, merged).source, axis],
         }
+    }
+}
+
+fn point_of(frame: &ReplicaFrame, index: usize, merged: bool) -> &MeasuredPoint {
+    match &frame.merging {
+        Some(merging) if merged => &merging.points[index],
+        _ => &frame.points[index],
     }
 }

@@ -1,10 +1,10 @@
 //! The residuals of a stage, in units of independent noise, and their derivatives.
 
 use super::frames::Equilibria;
-use super::state::FrameResult;
+use super::observation::{Balance, Objective, Observation};
 use crate::optimise::gauss_newton::{Evaluation, Residuals};
 use crate::optimise::robust::Robust;
-use crate::twin::replica::{Replica, ReplicaFrame};
+use crate::twin::replica::Replica;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::Status;
 use cloth_sim::material::Component;
@@ -20,8 +20,8 @@ impl Equilibria<'_> {
         let mut index = 0;
         for &(replica, frame) in &self.frames {
             let own = &self.replicas[replica];
-            for observation in self.task.objective.observations(own, &own.frames[frame]) {
-                let [of, number] = observation.source();
+            for observation in self.observations(&own.frames[frame]) {
+                let [of, number] = observation.source(&own.frames[frame]);
                 tracks.entry((replica, of, number)).or_default().push(index);
                 index += 1;
             }
@@ -39,10 +39,8 @@ impl Equilibria<'_> {
         let columns: usize =
             groups.iter().map(|group| curves.get(group[0]).map_or(0, StiffnessCurve::len)).sum();
         let mut values = Vec::new();
-        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
-            let replica = &self.replicas[replica];
-            let rows = self.residual_rows(replica, &replica.frames[frame], result, columns);
-            values.extend(rows.columns(1, columns).transpose().iter());
+        for result in &results {
+            values.extend(result.rows.columns(1, columns).transpose().iter());
         }
         DMatrix::from_row_slice(values.len() / columns.max(1), columns, &values)
     }
@@ -60,43 +58,62 @@ impl Equilibria<'_> {
         let results = self.solve_frames(&self.curves(), &[], None);
         let mut sizes: Vec<f64> = Vec::new();
         // A frame without an equilibrium has no residuals.
-        let balanced =
-            self.frames.iter().zip(&results).filter(|(_, result)| result.status == Status::Converged);
-        for (&(replica, frame), result) in balanced {
-            let replica = &self.replicas[replica];
-            let rows = self.residual_rows(replica, &replica.frames[frame], result, 0);
-            sizes.extend(rows.iter().map(|residual| residual.abs()));
+        for result in results.iter().filter(|result| result.status == Status::Converged) {
+            sizes.extend(result.rows.iter().map(|residual| residual.abs()));
         }
         sizes.sort_by(f64::total_cmp);
         sizes.get(sizes.len() / 2).map_or(0.0, |median| 1.4826 * median)
     }
 
-    /// A frame's residuals, with their derivatives in further columns, all in units of independent noise.
-    fn residual_rows(
+    /// Residuals of some observations, in units of independent noise, with their derivatives by the control values in
+    /// further columns; and their derivatives by the frame's own unknowns.
+    ///
+    /// * `correction` — error of the grid in each simulated value, or empty
+    pub(super) fn rows(
         &self,
         replica: &Replica,
-        frame: &ReplicaFrame,
-        result: &FrameResult,
-        points: usize,
-    ) -> DMatrix<f64> {
-        let observations = self.task.objective.observations(replica, frame);
-        let mut rows = DMatrix::zeros(observations.len(), points + 1);
+        observations: &[Observation],
+        balance: &Balance<'_>,
+        values: usize,
+        correction: &[f64],
+    ) -> (DMatrix<f64>, DMatrix<f64>) {
+        let owned = balance.owned();
+        let mut rows = DMatrix::zeros(observations.len(), values + 1);
+        let mut own = DMatrix::zeros(observations.len(), owned);
+        let mut derivatives = vec![0.0; values + owned];
         for (i, observation) in observations.iter().enumerate() {
             let scale = observation.spread * self.scale(replica);
-            rows[(i, 0)] = (observation.measured - result.simulated[i]) / scale;
-            (0..points).for_each(|k| rows[(i, k + 1)] = result.derivatives[i * points + k] / scale);
+            let simulated = observation.simulated(balance) + correction.get(i).unwrap_or(&0.0);
+            let residual = (observation.measured - simulated) / scale;
+            let (bent, slope) = self.task.robust.map_or((residual, 1.0), |robust| robust.bend(residual));
+            rows[(i, 0)] = bent;
+            let (by_value, by_own) = derivatives.split_at_mut(values);
+            observation.differentiate(balance, by_value, by_own);
+            by_value.iter().enumerate().for_each(|(j, d)| rows[(i, j + 1)] = slope * d / scale);
+            by_own.iter().enumerate().for_each(|(j, d)| own[(i, j)] = slope * d / scale);
         }
-        if let Some(whitening) = &result.state.whitening {
-            whitening.apply(&mut rows);
+        (rows, own)
+    }
+
+    /// Sum of squares, in the units of the residuals, that no cylinder off a table meets, and its degrees of freedom; `None`
+    /// without merged points.
+    pub fn repeats(&self) -> Option<(f64, usize)> {
+        if self.task.robust.is_some() || self.task.objective != Objective::Positions {
+            return None;
         }
-        if let Some(robust) = self.task.robust {
-            for mut row in rows.row_iter_mut() {
-                let (value, slope) = robust.bend(row[0]);
-                row *= slope;
-                row[0] = value;
-            }
+        let (mut squares, mut freedom) = (0.0, 0);
+        for &(replica, frame) in &self.frames {
+            let replica = &self.replicas[replica];
+            let merging = replica.frames[frame].merging.as_ref()?;
+            squares += merging.left / self.scale(replica).powi(2);
+            freedom += merging.freedom;
         }
-        rows
+        (freedom > 0).then_some((squares, freedom))
+    }
+
+    /// Number of the frames' own unknowns that their measurements determine.
+    pub fn eliminated(&self) -> usize {
+        self.states.iter().map(|state| state.eliminated).sum()
     }
 }
 
@@ -126,10 +143,8 @@ impl Residuals for Equilibria<'_> {
             ));
         }
         let (mut residual, mut derivatives) = (Vec::new(), Vec::new());
-        for (&(replica, frame), result) in self.frames.iter().zip(&results) {
-            let replica = &self.replicas[replica];
-            let rows = self.residual_rows(replica, &replica.frames[frame], result, point.len());
-            for row in rows.row_iter() {
+        for result in &results {
+            for row in result.rows.row_iter() {
                 residual.push(row[0]);
                 derivatives.extend(row.iter().skip(1));
             }

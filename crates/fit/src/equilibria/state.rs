@@ -1,22 +1,29 @@
 //! The equilibrium of one frame, and the start of its first solve.
 
-use super::whitening::Whitening;
-use crate::twin::replica::{Replica, ReplicaFrame};
+use crate::twin::replica::{EdgePose, Replica, ReplicaFrame};
 use cloth_sim::equilibrium::Status;
 use cloth_sim::material::Curves;
+use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// The equilibrium of one frame at given control values.
 #[derive(Debug, Clone, Default)]
 pub(super) struct State {
     pub(super) x: Vec<f64>,
-    /// dx/dk: one column of unknowns per control value; empty before the first solve.
+    /// dx/dk, one column of unknowns per control value, with the frame's own unknowns at their best; empty before the
+    /// first solve.
     pub(super) sensitivity: Vec<f64>,
     /// The solve met an unstable equilibrium and left it: others may exist.
     pub(super) escaped: bool,
-    /// Weighs errors of held positions. Renewed by [`Equilibria::set_unknowns`] and constant in between, so that the
-    /// objective stays one function.
-    pub(super) whitening: Option<Arc<Whitening>>,
+    /// Pose of the sheet at a table's edge.
+    pub(super) edge: Option<EdgePose>,
+    /// dν/dk of the pose: one column per control value.
+    pub(super) edge_sensitivity: DMatrix<f64>,
+    /// Number of the frame's own unknowns that its measurements determine.
+    pub(super) eliminated: usize,
+    /// Error of the grid, added to the simulated values: as many as observations, or none. Renewed by
+    /// [`Equilibria::correct`] and constant in between, so that the objective stays one function.
+    pub(super) correction: Arc<Vec<f64>>,
 }
 
 /// A frame's share of an evaluation.
@@ -25,18 +32,25 @@ pub(super) struct FrameResult {
     pub(super) status: Status,
     /// Simulated force along each measured component, N.
     pub(super) forces: Vec<f64>,
-    /// Simulated values of the compared quantities.
+    /// Residuals of the compared quantities in units of independent noise, then their derivatives by the control
+    /// values: one row each.
+    pub(super) rows: DMatrix<f64>,
+    /// Simulated values of the compared quantities, without correction.
     pub(super) simulated: Vec<f64>,
-    /// Their derivatives, row by row.
-    pub(super) derivatives: Vec<f64>,
 }
 
 /// The replica's own start, with every observed free node moved to its measured place. On a table the start already
 /// consists of the observed shape.
 pub(super) fn measured_shape(replica: &Replica, frame: &ReplicaFrame) -> Vec<f64> {
     let mut x = frame.start.clone();
-    for observed in frame.observed.iter().filter(|_| !replica.is_on_table()) {
-        replica.seen_unknowns(frame).for_each(|(_, coordinate)| x[coordinate] = observed[coordinate]);
+    if !replica.is_on_table() {
+        let cloth = replica.cloth(frame);
+        for (point, axis) in frame.points.iter().flat_map(|point| (0..3).map(move |axis| (point, axis))) {
+            let coordinate = 3 * point.source + axis;
+            if cloth.unknown(coordinate).is_some() {
+                x[coordinate] = point.position[axis];
+            }
+        }
     }
     x
 }
@@ -47,7 +61,7 @@ pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curv
     let cloth = replica.cloth(frame);
     let own = frame.start.clone();
     if frame.observed.is_none() || replica.is_on_table() {
-        return State { x: own, ..State::default() };
+        return State { x: own, edge: frame.edge(), ..State::default() };
     }
     let measured = measured_shape(replica, frame);
     let imbalance = |x: &[f64]| {

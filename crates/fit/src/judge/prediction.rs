@@ -151,6 +151,7 @@ fn parts(
         areal_density: set.fabric.areal_density_kg_m2,
         nodes: settings.nodes,
         diagonals: settings.diagonals,
+        refinement: 1,
         table: settings.table,
     }
 }

@@ -21,8 +21,8 @@ pub use options::{Globalisation, Options};
 pub use outcome::{Iteration, Outcome, Status};
 pub use problem::{Evaluation, LinearConstraints, Residuals};
 
-use crate::optimise::least_squares::{LeastSquares, Status as StepStatus};
-use nalgebra::{DMatrix, DVector};
+use crate::optimise::least_squares::Status as StepStatus;
+use nalgebra::DVector;
 use problem::values;
 use region::{Bend, Scale, Step};
 use state::{State, accepted_state};
@@ -48,7 +48,7 @@ pub fn minimise<P: Residuals>(
     options: &Options,
     observe: &mut dyn FnMut(&Iteration),
 ) -> Result<Outcome, P::Error> {
-    let inside = match inside(start, domain) {
+    let inside = match domain.nearest(start) {
         Ok(inside) => inside,
         Err(status) => return Ok(Outcome::unevaluated(start.clone(), Status::StepFailed { status })),
     };
@@ -156,22 +156,6 @@ fn within_region<P: Residuals>(
         }
     };
     Ok(Outcome::at(state.point, state.residual, state.jacobian, status, iterations))
-}
-
-/// The start itself, or the nearest point that satisfies the inequalities.
-fn inside(start: &DVector<f64>, domain: &LinearConstraints) -> Result<DVector<f64>, StepStatus> {
-    let n = start.len();
-    let slack = &domain.rows * start - &domain.bounds;
-    if slack.iter().all(|&slack| slack >= 0.0) {
-        return Ok(start.clone());
-    }
-    let mut nearest = LeastSquares::new(DMatrix::identity(n, n), start.clone());
-    (nearest.rows, nearest.bounds) = (domain.rows.clone(), domain.bounds.clone());
-    let solution = nearest.solve();
-    match solution.status {
-        StepStatus::Optimal | StepStatus::Inaccurate { .. } => Ok(solution.point),
-        status => Err(status),
-    }
 }
 
 /// Gain over prediction. If the prediction is within rounding (a step along which the data see nothing), any point

@@ -40,19 +40,36 @@ pub struct Scatter {
     pub expected: f64,
 }
 
+/// Source of the noise of a fit's measurements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoiseSource<'a> {
+    /// The noise of one measurement was declared.
+    Declared(f64),
+    /// Measurements that no parameter can tell apart differ by noise alone.
+    Repeats {
+        /// Sum of their squared differences from what they share.
+        squares: f64,
+        /// Its degrees of freedom.
+        freedom: usize,
+    },
+    /// Differences of consecutive residuals: indices, in order. Without any, all residuals are noise.
+    Neighbours(&'a [Vec<usize>]),
+}
+
 impl Scatter {
     /// Splits the residuals of a fit into noise and misfit.
     ///
     /// * `residual` — one entry per measurement
     /// * `jacobian` — its rows; zero rows, which no parameter moves, are omitted, small ones are not
     /// * `tracks` — consecutive measurements, in order
+    /// * `rank` — number of parameters that the measurements tell, eliminated ones included
     /// * `known` — the noise, if given
+    /// * `within` — sum of squares, and its degrees of freedom, of what no curve can meet: noise alone
     pub fn new(
         residual: &DVector<f64>,
         jacobian: &DMatrix<f64>,
         rank: usize,
-        tracks: &[Vec<usize>],
-        known: Option<f64>,
+        source: NoiseSource<'_>,
     ) -> Self {
         let informative: Vec<bool> = jacobian.row_iter().map(|row| row.amax() > 0.0).collect();
         let measurements = informative.iter().filter(|&&seen| seen).count();
@@ -60,26 +77,29 @@ impl Scatter {
         let square = |i: usize| residual[i] * residual[i];
         let sum: f64 = (0..residual.len()).filter(|&i| informative[i]).map(square).sum();
         let mean_square = sum / freedom.max(1) as f64;
-        let variance = match known {
-            Some(noise) => noise * noise,
-            None => successive_variance(residual, tracks, &informative).unwrap_or(mean_square),
-        };
-        // The 99 % quantile of s²/σ² under noise alone.
-        let chance = match known {
-            Some(_) => chi_square(freedom.max(1) as f64, Z_99) / freedom.max(1) as f64,
-            None => {
-                // Von Neumann's ratio: spread of its deviation from 1 for white noise.
-                let n = measurements as f64;
-                1.0 / (1.0 - Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()).max(f64::MIN_POSITIVE)
+        let variance = match source {
+            NoiseSource::Declared(noise) => noise * noise,
+            NoiseSource::Repeats { squares, freedom } => squares / freedom as f64,
+            NoiseSource::Neighbours(tracks) => {
+                successive_variance(residual, tracks, &informative).unwrap_or(mean_square)
             }
+        };
+        let by_neighbours = matches!(source, NoiseSource::Neighbours(_));
+        // The 99 % quantile of s²/σ² under noise alone.
+        let chance = if by_neighbours {
+            // Von Neumann's ratio: spread of its deviation from 1 for white noise.
+            let n = measurements as f64;
+            1.0 / (1.0 - Z_99 * ((n - 2.0).max(1.0) / (n * n - 1.0)).sqrt()).max(f64::MIN_POSITIVE)
+        } else {
+            chi_square(freedom.max(1) as f64, Z_99) / freedom.max(1) as f64
         };
         let excess = if freedom > 0 { (mean_square - chance * variance).max(0.0) } else { 0.0 };
         // Estimated noise cannot exceed the residual.
-        let variance = if known.is_none() && excess == 0.0 { mean_square } else { variance };
+        let variance = if by_neighbours && excess == 0.0 { mean_square } else { variance };
         let misfit = excess.sqrt();
         Self {
             noise: variance.sqrt(),
-            known: known.is_some(),
+            known: matches!(source, NoiseSource::Declared(_)),
             residual: mean_square.sqrt(),
             misfit,
             measurements,
@@ -97,6 +117,19 @@ impl Scatter {
             && freedom > 0.0
             && self.residual.powi(2) * freedom
                 < chi_square(freedom, -Z_99) * self.expected * self.noise.powi(2)
+    }
+
+    /// Standard deviation of a measurement that is white and blurs parameters as much as noise and misfit do together.
+    ///
+    /// * `rank` — number of parameters that the measurements tell
+    pub(crate) fn deviation(&self, rank: usize) -> f64 {
+        let excess = self.misfit.powi(2) * self.measurements as f64 / rank.max(1) as f64;
+        (self.noise.powi(2) + excess).sqrt()
+    }
+
+    /// Standard deviation of a measurement: as declared, or else as if all that is left were white noise.
+    pub(crate) fn white(&self) -> f64 {
+        if self.known { self.noise } else { self.residual }
     }
 
     /// Converts to other units.
@@ -130,7 +163,7 @@ fn successive_variance(residual: &DVector<f64>, tracks: &[Vec<usize>], informati
 /// Quantile of the χ² distribution (Wilson and Hilferty 1931).
 ///
 /// * `z` — the standard normal quantile
-fn chi_square(freedom: f64, z: f64) -> f64 {
+pub(crate) fn chi_square(freedom: f64, z: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     freedom * (1.0 - spread + z * spread.sqrt()).max(0.0).powi(3)
 }
@@ -180,8 +213,7 @@ impl Covariance {
         let largest = gram.eigenvalues.max();
         let seen = |i: usize| gram.eigenvalues[i] > RANK_TOLERANCE * largest;
         let rank = (0..parameters).filter(|&i| seen(i)).count();
-        let excess = scatter.misfit.powi(2) * scatter.measurements as f64 / rank.max(1) as f64;
-        let variance = scatter.noise.powi(2) + excess;
+        let variance = scatter.deviation(rank).powi(2);
         let mut inverse = DMatrix::zeros(parameters, parameters);
         let mut unseen = Vec::new();
         for i in 0..parameters {
@@ -201,6 +233,16 @@ impl Covariance {
             freedom => Some(student_975(freedom as f64)),
         };
         Self { matrix: &inverse * variance, inverse, rank, unseen, quantile }
+    }
+
+    /// As [`Covariance::new`], but with a prior.
+    ///
+    /// * `posterior` — the covariance, if all that is left is white noise
+    pub(crate) fn with_prior(jacobian: &DMatrix<f64>, scatter: &Scatter, posterior: &DMatrix<f64>) -> Self {
+        let without = Self::new(jacobian, scatter);
+        let inverse = posterior / scatter.white().powi(2);
+        let matrix = &inverse * scatter.deviation(without.rank).powi(2);
+        Self { matrix, inverse, unseen: DMatrix::zeros(jacobian.ncols(), 0), ..without }
     }
 
     /// G = (JᵀJ)⁻¹ Jᵀ J_q: effect of other parameters' errors on these.
@@ -292,8 +334,8 @@ mod tests {
             let noise = white(&mut rng, 60, 0.2);
             let fit = jacobian.clone().svd(true, true).solve(&noise, 1e-12).unwrap();
             let residual = &noise - &jacobian * fit;
-            let known = Scatter::new(&residual, &jacobian, 2, &tracks, Some(0.2));
-            let estimated = Scatter::new(&residual, &jacobian, 2, &tracks, None);
+            let known = Scatter::new(&residual, &jacobian, 2, NoiseSource::Declared(0.2));
+            let estimated = Scatter::new(&residual, &jacobian, 2, NoiseSource::Neighbours(&tracks));
             flagged += usize::from(known.misfit > 0.0) + usize::from(estimated.misfit > 0.0);
             sum += estimated.noise / 400.0;
         }
@@ -307,7 +349,12 @@ mod tests {
         let (jacobian, tracks) = line(60);
         let residual = white(&mut rng, 60, 0.01) + DVector::from_fn(60, |i, _| 0.1 * (i as f64 * 0.3).sin());
         for known in [Some(0.01), None] {
-            let scatter = Scatter::new(&residual, &jacobian, 2, &tracks, known);
+            let scatter = Scatter::new(
+                &residual,
+                &jacobian,
+                2,
+                known.map_or(NoiseSource::Neighbours(&tracks), NoiseSource::Declared),
+            );
             assert!((scatter.misfit - 0.07).abs() < 0.01, "{scatter:?}");
             assert!(scatter.noise < 0.03, "{scatter:?}");
         }
@@ -318,21 +365,21 @@ mod tests {
     fn a_measurement_that_a_parameter_hardly_moves_counts() {
         let jacobian = DMatrix::from_column_slice(4, 1, &[2.0, 1.0, 1e-20, 1e-35]);
         let residual = DVector::from_vec(vec![0.3, -0.6, 0.1, -0.2]);
-        let scatter = Scatter::new(&residual, &jacobian, 1, &[], None);
+        let scatter = Scatter::new(&residual, &jacobian, 1, NoiseSource::Neighbours(&[]));
         assert_eq!((scatter.measurements, scatter.freedom), (4, 3));
         let deviation = Covariance::new(&jacobian, &scatter).standard_deviations()[0].unwrap();
         assert!((deviation - (0.5 / 3.0 / 5.0f64).sqrt()).abs() < 1e-12, "{deviation}");
         let none = DMatrix::from_column_slice(4, 1, &[2.0, 1.0, 0.0, 0.0]);
-        assert_eq!(Scatter::new(&residual, &none, 1, &[], None).measurements, 2);
+        assert_eq!(Scatter::new(&residual, &none, 1, NoiseSource::Neighbours(&[])).measurements, 2);
     }
 
     #[test]
     fn a_noise_that_is_declared_too_large_is_noticed_and_no_measure() {
         let mut rng = StdRng::seed_from_u64(6);
-        let (jacobian, tracks) = line(60);
+        let (jacobian, _) = line(60);
         let residual = white(&mut rng, 60, 0.2);
         for (declared, overstated) in [(0.6, true), (0.2, false)] {
-            let scatter = Scatter::new(&residual, &jacobian, 2, &tracks, Some(declared));
+            let scatter = Scatter::new(&residual, &jacobian, 2, NoiseSource::Declared(declared));
             assert_eq!(scatter.noise_is_overstated(), overstated, "{scatter:?}");
             let variance = variance_left(&(&residual / declared), 2, true);
             let expected = if overstated { scatter.residual.powi(2) / declared.powi(2) } else { 1.0 };

@@ -1,6 +1,6 @@
 //! The course that every stage takes: replicas, a start, equilibria, a curve that grows, and how sure it is.
 
-use super::growth::{Growth, grow, refit};
+use super::growth::{Growth, average, grow, refit, scatter};
 use super::interventions::Interventions;
 use super::knowledge::Knowledge;
 use super::plan::{Plan, mechanics, unfit};
@@ -12,7 +12,7 @@ use super::watch::Watch;
 use crate::equilibria::{Equilibria, Objective, Task, Unknowns};
 use crate::optimise::gauss_newton::Outcome;
 use crate::optimise::uncertainty::{Covariance, Scatter};
-use crate::twin::replica::Replica;
+use crate::twin::replica::{Replica, TableHold};
 use cloth_data::error::Result;
 use cloth_data::frame::MeasurementSet;
 use cloth_sim::curve::StiffnessCurve;
@@ -47,7 +47,15 @@ pub fn fit(
     let constant = StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?;
     let first = before.clone().unwrap_or(constant);
     let unknowns = Unknowns::one(&plan.fitted, first);
-    let mut simulation = simulate(plan, &replicas, known, unknowns, settings, watch)?;
+    // Off a table the grid's error is corrected; springs stand for their own grid.
+    let finer_replicas = match plan.objective {
+        Objective::Positions if settings.table == TableHold::FoundEdge && !settings.model.is_of_springs() => {
+            plan.refined(set, settings, 2)?
+        }
+        _ => Vec::new(),
+    };
+    let simulation = simulate(plan, &replicas, known, unknowns, settings, watch)?;
+    let mut simulation = simulation.corrected_by(&finer_replicas);
     let dropped = simulation.dropped().len();
     let growth = match &before {
         Some(_) => refit(&mut simulation, settings, &[1e-3 * largest], watch),
@@ -58,7 +66,8 @@ pub fn fit(
         let status = growth.outcome.status.to_string();
         return Err(unfit(&replicas, status, "measurements that some curve can answer"));
     }
-    let tracks = simulation.tracks();
+    let growth =
+        average(&mut simulation, growth, settings, &[1e-3 * largest], watch).map_err(mechanics(plan))?;
     // The last trial may have been a step that was rejected.
     simulation.set_unknowns(growth.unknowns.clone());
     // A stage has one.
@@ -67,7 +76,7 @@ pub fn fit(
     let forces = simulation.settle();
     let complete = simulation.dropped().len() == dropped;
     let others = knowledge.without(&plan.fitted);
-    let mut judgement = judge(plan, &simulation, &growth, curve, &tracks, &others, complete);
+    let mut judgement = judge(plan, &simulation, &growth, curve, &others, complete);
     if let Some(apart) = before.and_then(|first| ignorance(plan, &assumed, &first, curve)) {
         judgement.covariance.widen(&apart);
     }
@@ -184,18 +193,16 @@ fn judge(
     simulation: &Equilibria<'_>,
     growth: &Growth,
     curve: &StiffnessCurve,
-    tracks: &[Vec<usize>],
     others: &Knowledge,
     complete: bool,
 ) -> Judgement {
     let Outcome { residual, jacobian, .. } = &growth.outcome;
-    let noise = simulation.noise_is_known().then_some(1.0);
-    let scatter = Scatter {
-        expected: simulation.task().robust.map_or(1.0, |robust| robust.mean_of_noise()),
-        ..Scatter::new(residual, jacobian, Covariance::rank_of(jacobian), tracks, noise)
-    };
+    let scatter = scatter(simulation, residual, jacobian);
     let observed = is_observed(plan, growth, curve, &scatter, others);
-    let mut covariance = Covariance::new(jacobian, &scatter);
+    let mut covariance = match &growth.covariance {
+        Some(matrix) => Covariance::with_prior(jacobian, &scatter, matrix),
+        None => Covariance::new(jacobian, &scatter),
+    };
     let groups = others.groups(&plan.components);
     let mut gain = DMatrix::zeros(curve.len(), 0);
     if complete && !groups.is_empty() {

@@ -5,13 +5,16 @@
 //!
 //! Source: Miguel et al. 2012, §5.2; the second try is ours, unless [`GrowthRule`](super::GrowthRule) says otherwise.
 
-use super::growth_rule::SIGNIFICANT;
+use super::growth_rule::by_chance;
 use super::level::Level;
+use super::posterior::{Led, Posterior, Prior};
 use super::settings::{Constraints, Settings};
 use super::watch::{Event, Watch};
 use crate::equilibria::{Equilibria, Objective, Unknown, Unknowns};
-use crate::optimise::gauss_newton::{Iteration, LinearConstraints, Outcome, minimise};
-use crate::optimise::uncertainty::{Covariance, variance_left};
+use crate::optimise::gauss_newton::{
+    Evaluation, Iteration, LinearConstraints, Options, Outcome, Residuals, Status, minimise,
+};
+use crate::optimise::uncertainty::{Covariance, NoiseSource, Scatter, variance_left};
 use cloth_sim::curve::{StiffnessCurve, stability_rows};
 use cloth_sim::error::Result;
 use nalgebra::{DMatrix, DVector};
@@ -20,10 +23,10 @@ use std::time::Instant;
 /// Residuals up to this share of the compared values are rounding; none is better than another.
 const ROUNDING: f64 = 1e-12;
 
-/// Whitening is renewed once at the minimum of every level, for comparison with other levels; for the level that is
-/// kept, until the minimum moves by less than this share, or at most this often.
-const SETTLED: f64 = 1e-5;
-const MOST_WHITENINGS: usize = 4;
+/// The grid's error is corrected once at the minimum of every level, for comparison with other levels; for the level that
+/// is kept, until the minimum moves by less than this share, or at most this often.
+const SETTLED: f64 = 1e-4;
+const MOST_CORRECTIONS: usize = 4;
 
 /// Grown curves.
 pub struct Growth {
@@ -33,6 +36,8 @@ pub struct Growth {
     pub outcome: Outcome,
     /// Constraints on the curve.
     pub domain: LinearConstraints,
+    /// Covariance of the control values over all descriptions of the curve; `None` for one with these control points.
+    pub covariance: Option<DMatrix<f64>>,
     /// Every level, including those that did not pay and were not kept.
     pub levels: Vec<Level>,
     /// Reason for the end of the growth.
@@ -42,6 +47,18 @@ pub struct Growth {
 /// If doubling a constant stiffness changes less than this share of the residual, more points would be undetermined,
 /// as for ring-2 springs that depend on softer yarns.
 const FELT: f64 = 0.1;
+
+/// Most control points that the frames support. A curve with as many points as frames fits them all and means nothing; with
+/// unknown noise, one more frame is needed to judge it.
+fn most_points(simulation: &Equilibria<'_>, settings: &Settings) -> usize {
+    let spare = usize::from(!simulation.noise_is_known());
+    let carriers = match simulation.task().objective {
+        Objective::Forces => simulation.settled().count(),
+        Objective::Positions => simulation.measurements(),
+    };
+    let curves = simulation.unknowns().iter().count().max(1);
+    settings.most_points().min(carriers.saturating_sub(spare) / curves).max(1)
+}
 
 /// Fits with an increasing number of control points, starting with the simulation's curve.
 ///
@@ -55,15 +72,7 @@ pub fn grow(
     lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
 ) -> Result<Growth> {
-    // A curve with as many points as frames fits them all and means nothing; with unknown noise, one more frame is
-    // needed to judge it.
-    let spare = usize::from(!simulation.noise_is_known());
-    let carriers = match simulation.task().objective {
-        Objective::Forces => simulation.settled().count(),
-        Objective::Positions => simulation.measurements(),
-    };
-    let curves = simulation.unknowns().iter().count().max(1);
-    let most = settings.most_points().min(carriers.saturating_sub(spare) / curves).max(1);
+    let most = most_points(simulation, settings);
     let mut levels = Vec::new();
     let mut kept: Option<(Unknowns, Outcome, LinearConstraints)> = None;
     let rule = settings.growth;
@@ -71,23 +80,24 @@ pub fn grow(
     let mut tries = 0;
     loop {
         let points = points_of(&unknowns);
-        let (outcome, domain, level) = fit_level(simulation, &unknowns, 1, settings, lowest_tangents, watch)?;
+        let (outcome, domain, level) =
+            fit_level(simulation, &unknowns, None, 1, settings, lowest_tangents, watch)?;
         levels.push(level);
         unknowns = unknowns.with_values(&outcome.point)?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
         if points == 1 && !felt {
             let stopped = "a constant stiffness hardly changes the simulated values".to_string();
-            return Ok(Growth { unknowns, outcome, domain, levels, stopped });
+            return Ok(Growth { unknowns, outcome, domain, covariance: None, levels, stopped });
         }
         let all = points >= most;
         let noise = variance_left(&outcome.residual, unknowns.len(), simulation.noise_is_known());
         let rounding = (ROUNDING * (&outcome.jacobian * &outcome.point).norm()).powi(2);
         // Points that the data do not separate fit noise: their gain must exceed that of as many points by chance.
         let told_apart = Covariance::rank_of(&outcome.jacobian) == unknowns.len();
-        let by_chance = |added: usize| 0.5 * added as f64 * SIGNIFICANT * noise;
+        let known = simulation.noise_is_known().then_some(1.0);
         let pays = |before: f64, after: f64, added: usize| {
-            rule.pays(before.max(rounding), after.max(rounding), noise)
-                && (told_apart || before - after > by_chance(added))
+            rule.pays([before.max(rounding), after.max(rounding)], known, noise, added)
+                && (told_apart || before - after > by_chance(added) * noise)
         };
         let best = match kept {
             Some(best)
@@ -108,25 +118,166 @@ pub fn grow(
                     format!("the frames support no more than {points} control points")
                 }
                 0 => format!("all {points} control points are in use"),
+                _ if known.is_some() && rule.significance => {
+                    format!("{points} control points lower the residual by no more than chance")
+                }
                 _ => format!(
                     "{points} control points lower the residual by less than {:.0} %",
                     100.0 * rule.gain
                 ),
             };
             let (mut unknowns, mut outcome, domain) = best;
-            if simulation.is_whitened() {
-                let (settled, _, level) =
-                    fit_level(simulation, &unknowns, MOST_WHITENINGS, settings, lowest_tangents, watch)?;
+            if simulation.is_corrected() {
+                let (settled, _, level) = fit_level(
+                    simulation,
+                    &unknowns,
+                    None,
+                    MOST_CORRECTIONS,
+                    settings,
+                    lowest_tangents,
+                    watch,
+                )?;
                 if !settled.residual.is_empty() {
                     unknowns = unknowns.with_values(&settled.point)?;
                     outcome = settled;
                     levels.iter_mut().filter(|l| l.points == level.points).for_each(|l| l.go_on(&level));
                 }
             }
-            return Ok(Growth { unknowns, outcome, domain, levels, stopped });
+            return Ok(Growth { unknowns, outcome, domain, covariance: None, levels, stopped });
         }
         kept = Some(best);
         unknowns = resampled(simulation, &unknowns, next_points(points, most))?;
+    }
+}
+
+/// Fewest control values that the frames must tell apart for a curve to be described: mean, trend and bend.
+const COURSE: usize = 3;
+
+/// The mean over all descriptions is found where it moves by less than this share of its standard deviation. Where it still
+/// moves after so many steps the weights stay, and a fit led by them finds it: at kinks of a spline steps go to and fro.
+const MEAN_FOUND: f64 = 0.05;
+const MOST_MEANS: usize = 6;
+
+/// Increase of ‖r/σ‖² that makes a step to the mean too long.
+const WORSE: f64 = 9.0;
+
+/// True if the curve is averaged over descriptions: one that may bend.
+fn is_averaged(simulation: &Equilibria<'_>, settings: &Settings) -> bool {
+    let one = simulation.unknowns().iter().count() == 1;
+    settings.averaged && one && most_points(simulation, settings) >= COURSE
+}
+
+/// Moves a grown curve to the mean over all descriptions of its course, with all control points.
+///
+/// # Errors
+/// Control points that do not form a valid curve.
+pub(crate) fn average(
+    simulation: &mut Equilibria<'_>,
+    growth: Growth,
+    settings: &Settings,
+    lowest_tangents: &[f64],
+    watch: &mut Watch<'_>,
+) -> Result<Growth> {
+    let points = most_points(simulation, settings);
+    let felt = (&growth.outcome.jacobian * &growth.outcome.point).norm();
+    if !is_averaged(simulation, settings)
+        || growth.outcome.residual.len() <= points
+        || felt < FELT * growth.outcome.residual.norm()
+    {
+        return Ok(growth);
+    }
+    let mut unknowns = resampled(simulation, &growth.unknowns, points)?;
+    let domain = domain_of(&unknowns, settings, lowest_tangents)?;
+    simulation.set_unknowns(unknowns.clone());
+    let mut point = unknowns.values();
+    let mut found: Option<(Outcome, DMatrix<f64>, Option<Prior>, f64)> = None;
+    let mut settled = false;
+    for _ in 0..MOST_MEANS {
+        let values = match simulation.evaluate(&point, true) {
+            Ok(Evaluation::Values { residual, jacobian: Some(jacobian) }) => Some((residual, jacobian)),
+            _ => None,
+        };
+        let worse = |residual: &DVector<f64>| {
+            let last = found.as_ref().map(|(last, .., noise)| last.sum_of_squares + WORSE * noise * noise);
+            last.is_some_and(|most| residual.norm_squared() > most)
+        };
+        let Some((residual, jacobian)) = values.filter(|(residual, _)| !worse(residual)) else {
+            // Too far for the linear model: half the way.
+            match &found {
+                Some((last, ..)) => point = 0.5 * (&point + &last.point),
+                None => break,
+            }
+            continue;
+        };
+        // What the frames tell apart is no course.
+        if found.is_none() && Covariance::rank_of(&jacobian) < COURSE {
+            break;
+        }
+        let noise = scatter(simulation, &residual, &jacobian).white();
+        let (scaled, slope) = (&residual / noise, &jacobian / noise);
+        let Some(posterior) = Posterior::new(&scaled, &slope, &point) else { break };
+        let prior = Prior::behind(&posterior, &scaled, &slope, &point, noise);
+        let Ok(next) = domain.nearest(&posterior.mean) else { break };
+        let near = |i: usize| {
+            let deviation = posterior.covariance[(i, i)].max(0.0).sqrt();
+            (next[i] - point[i]).abs() <= MEAN_FOUND * deviation + SETTLED * point[i].abs()
+        };
+        settled = (0..points).all(near);
+        let sum_of_squares = residual.norm_squared();
+        let status = Status::MeanFound;
+        let outcome = Outcome {
+            sum_of_squares,
+            point: point.clone(),
+            residual,
+            jacobian,
+            status,
+            ..growth.outcome.clone()
+        };
+        found = Some((outcome, posterior.covariance, prior, noise));
+        if settled {
+            break;
+        }
+        point = next;
+        simulation.set_unknowns(unknowns.with_values(&point)?);
+        simulation.correct();
+    }
+    let Some((mut outcome, covariance, prior, _)) = found else { return Ok(growth) };
+    unknowns = unknowns.with_values(&outcome.point)?;
+    let rms = simulation.unit() * (outcome.sum_of_squares / outcome.residual.len() as f64).sqrt();
+    let status = outcome.status.to_string();
+    let mut level = Level { points, rms, status, iterations: Vec::new(), projected: 0 };
+    if !settled && prior.is_some() {
+        let (led, _, last) =
+            fit_level(simulation, &unknowns, prior.as_ref(), 1, settings, lowest_tangents, watch)?;
+        if !led.residual.is_empty() {
+            unknowns = unknowns.with_values(&led.point)?;
+            (outcome, level) = (led, last);
+        }
+    }
+    let mut levels = growth.levels;
+    match levels.iter_mut().find(|earlier| earlier.points == points) {
+        Some(earlier) => earlier.go_on(&level),
+        None => levels.push(level),
+    }
+    Ok(Growth { unknowns, outcome, domain, covariance: Some(covariance), levels, stopped: growth.stopped })
+}
+
+/// Noise and misfit of an evaluation.
+pub(crate) fn scatter(
+    simulation: &Equilibria<'_>,
+    residual: &DVector<f64>,
+    jacobian: &DMatrix<f64>,
+) -> Scatter {
+    let tracks = simulation.tracks();
+    let source = match (simulation.noise_is_known(), simulation.repeats()) {
+        (true, _) => NoiseSource::Declared(1.0),
+        (false, Some((squares, freedom))) => NoiseSource::Repeats { squares, freedom },
+        (false, None) => NoiseSource::Neighbours(&tracks),
+    };
+    let rank = Covariance::rank_of(jacobian) + simulation.eliminated();
+    Scatter {
+        expected: simulation.task().robust.map_or(1.0, |robust| robust.mean_of_noise()),
+        ..Scatter::new(residual, jacobian, rank, source)
     }
 }
 
@@ -142,20 +293,27 @@ pub fn refit(
 ) -> Result<Growth> {
     let points = points_of(simulation.unknowns());
     let start = resampled(simulation, simulation.unknowns(), points)?;
+    let averaged = is_averaged(simulation, settings);
+    // The mean moves it.
+    let evaluated = Settings { outer: Options { max_iterations: 0, ..settings.outer }, ..settings.clone() };
+    let settings = if averaged { &evaluated } else { settings };
     let (outcome, domain, level) =
-        fit_level(simulation, &start, MOST_WHITENINGS, settings, lowest_tangents, watch)?;
+        fit_level(simulation, &start, None, MOST_CORRECTIONS, settings, lowest_tangents, watch)?;
     let unknowns = start.with_values(&outcome.point)?;
+    let levels = if averaged { Vec::new() } else { vec![level] };
     let stopped = format!("all {points} control points of the previous pass are fitted again");
-    Ok(Growth { unknowns, outcome, domain, levels: vec![level], stopped })
+    Ok(Growth { unknowns, outcome, domain, covariance: None, levels, stopped })
 }
 
 /// Fits one level: a fixed number of control points.
 ///
-/// * `whitenings` — maximum number of renewed whitenings
+/// * `prior` — leads the fit; what it returns is the data's own
+/// * `corrections` — how often the correction of the grid's error is renewed at most
 fn fit_level(
     simulation: &mut Equilibria<'_>,
     unknowns: &Unknowns,
-    whitenings: usize,
+    prior: Option<&Prior>,
+    corrections: usize,
     settings: &Settings,
     lowest_tangents: &[f64],
     watch: &mut Watch<'_>,
@@ -171,9 +329,7 @@ fn fit_level(
     if let Some(limit) = settings.robust {
         simulation.make_robust(limit);
     }
-    let domains = unknowns.iter().zip(lowest_tangents);
-    let domains = domains.map(|(unknown, &lowest)| domain(&unknown.curve, settings.constraints, lowest));
-    let domain = LinearConstraints::together(&domains.collect::<Result<Vec<_>>>()?);
+    let domain = domain_of(unknowns, settings, lowest_tangents)?;
     let mut observe = |iteration: &Iteration| {
         let rms = unit * (iteration.sum_of_squares / measurements).sqrt();
         let factorisations = watch.meter.read().since(&spent_before).factorisations;
@@ -188,7 +344,8 @@ fn fit_level(
             observe(&step);
             iterations.push(step);
         };
-        match minimise(simulation, start, &domain, &settings.outer, &mut numbered) {
+        let mut led = Led { problem: simulation, prior };
+        match minimise(&mut led, start, &domain, &settings.outer, &mut numbered) {
             Ok(outcome) => {
                 projected += usize::from(outcome.projected);
                 outcome
@@ -197,13 +354,12 @@ fn fit_level(
         }
     };
     let mut outcome = fit_from(simulation, &unknowns.values());
-    // The effect of position errors of held lines depends on the shapes: use those at the minimum, independent of the
-    // start.
-    for _ in 0..whitenings {
-        if !simulation.is_whitened() || outcome.residual.is_empty() {
+    for _ in 0..corrections {
+        if !simulation.is_corrected() || outcome.residual.is_empty() {
             break;
         }
         simulation.set_unknowns(unknowns.with_values(&outcome.point)?);
+        simulation.correct();
         let again = fit_from(simulation, &outcome.point);
         let moved = (&again.point - &outcome.point).amax() / outcome.point.amax();
         if again.residual.is_empty() {
@@ -213,6 +369,12 @@ fn fit_level(
         if moved <= SETTLED {
             break;
         }
+    }
+    if prior.is_some() && !outcome.residual.is_empty() {
+        let own = measurements as usize;
+        outcome.residual = outcome.residual.rows(0, own).into_owned();
+        outcome.jacobian = outcome.jacobian.rows(0, own).into_owned();
+        outcome.sum_of_squares = outcome.residual.norm_squared();
     }
     let rms = unit * (outcome.sum_of_squares / measurements).sqrt();
     let status = outcome.status.to_string();
@@ -236,6 +398,13 @@ fn resampled(simulation: &Equilibria<'_>, unknowns: &Unknowns, points: usize) ->
 /// One, two, three, five, nine …: halves every segment, up to the maximum.
 fn next_points(points: usize, most: usize) -> usize {
     if points == 1 { 2 } else { 2 * points - 1 }.min(most)
+}
+
+/// The constraints of all curves.
+fn domain_of(unknowns: &Unknowns, settings: &Settings, lowest_tangents: &[f64]) -> Result<LinearConstraints> {
+    let domains = unknowns.iter().zip(lowest_tangents);
+    let domains = domains.map(|(unknown, &lowest)| domain(&unknown.curve, settings.constraints, lowest));
+    Ok(LinearConstraints::together(&domains.collect::<Result<Vec<_>>>()?))
 }
 
 /// The constraints of a curve, with smoothness where the data see nothing.

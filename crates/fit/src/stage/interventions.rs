@@ -142,7 +142,7 @@ impl Interventions {
             (self.steps_inaccurate, "fit steps solved inexactly"),
             (self.starts_projected, "infeasible starts projected"),
             (self.residuals_bent, "residuals downweighted"),
-            (self.vertices_left_out, "vertices too far off their line on the table"),
+            (self.vertices_left_out, "vertices too far off the profile of their overhang"),
         ];
         let counted =
             counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));

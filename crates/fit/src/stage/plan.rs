@@ -41,12 +41,26 @@ impl Plan {
     /// # Errors
     /// Sequences that no replica can be made of.
     pub fn replicas(&self, set: &MeasurementSet, settings: &Settings) -> Result<Vec<Replica>> {
+        self.refined(set, settings, 1)
+    }
+
+    /// As [`Plan::replicas`], on a multiple of the cells along overhangs.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn refined(
+        &self,
+        set: &MeasurementSet,
+        settings: &Settings,
+        refinement: usize,
+    ) -> Result<Vec<Replica>> {
         let parts = |kind: Kind| Parts {
             model: settings.model,
             components: self.components.clone(),
             areal_density: set.fabric.areal_density_kg_m2,
             nodes: settings.nodes,
             diagonals: settings.diagonals,
+            refinement,
             table: settings.table,
             // Strips cut on the bias are pulled taut, and nobody saw them buckle.
             flat: self.flat || kind.is_on_the_bias(),

@@ -111,11 +111,14 @@ pub struct Settings {
     pub solve_start: SolveStart,
     /// Start stiffness of a stage; default from the measurements. Published: not stated.
     pub first_stiffness: FirstStiffness,
-    /// Constraint at a table; default up to the second line past its edge. Published: the part on the table.
+    /// Constraint at a table; default the overhang with an edge that is found. Published: the part on the table.
     pub table: TableHold,
     /// Criterion for more control points; default a decrease of the root mean square residual by 1 %. Published: its
     /// square.
     pub growth: GrowthRule,
+    /// The mean over constant, straight and bent curves of all control points, weighed by the data, in place of one number
+    /// of points; default true. Published: false.
+    pub averaged: bool,
     /// Residuals above this multiple of the noise (of the typical residual if the noise is not given) have less
     /// weight; default `None`: full weight for all.
     pub robust: Option<f64>,
@@ -141,6 +144,7 @@ impl Default for Settings {
             first_stiffness: FirstStiffness::FromMeasurements,
             table: TableHold::default(),
             growth: GrowthRule::default(),
+            averaged: true,
             robust: None,
             start_factor: 1.0,
             // 1e-6 of the sum of squares, or 1e-7 of the stiffnesses, is far below any noise.
@@ -176,8 +180,9 @@ impl Settings {
             },
             solve_start: SolveStart::Measured,
             first_stiffness: FirstStiffness::Constant,
-            table: TableHold::PUBLISHED,
+            table: TableHold::AsSeen,
             growth: GrowthRule::PUBLISHED,
+            averaged: false,
             robust: None,
             outer: Options { globalisation: Globalisation::LineSearch, gain_tolerance: 0.01, ..self.outer },
             ..self

@@ -49,7 +49,7 @@ impl Shapes {
 
     /// Adds a frame.
     pub(crate) fn push(&mut self, settled: &Settled<'_>) {
-        let Settled { replica, frame, x, .. } = *settled;
+        let Settled { replica, frame, x, edge, .. } = *settled;
         let back = replica.specimen.frame.inverse();
         let place = |node: &[f64]| -> Place {
             let at = back.rotation * Vector3::from_column_slice(node) + back.translation.vector;
@@ -59,7 +59,7 @@ impl Shapes {
         self.frames.push(FrameShape {
             frame: frame.index,
             extension: frame.extension,
-            simulated: places(x),
+            simulated: places(&replica.displayed(frame, x, edge)),
             measured: frame.observed.as_deref().map(places).unwrap_or_default(),
         });
     }

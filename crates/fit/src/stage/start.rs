@@ -189,7 +189,7 @@ fn from_shapes(plan: &Plan, replicas: &[Replica], given: Option<f64>) -> Result<
         for frame in &replica.frames {
             let bending = replica.cloth(frame).bending();
             let rolled = plan.fitted.iter().find_map(|&component| bending?.rolled(component));
-            if let (Some(rolled), Some([rigidity, curvature])) = (rolled, replica.peirce(frame)) {
+            if let (Some(rolled), Some([rigidity, curvature])) = (rolled, frame.peirce) {
                 let rigidity = given.unwrap_or(rigidity);
                 let stress = rigidity * curvature / rolled.lever(curvature);
                 found.push(stress / rolled.strain(curvature));

@@ -9,7 +9,7 @@ use cloth_data::frame::Phase;
 use cloth_sim::bending::Rolled;
 use cloth_sim::curve::StiffnessCurve;
 use nalgebra::DVector;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The curve with its bands, over the strains of the simulation's equilibria.
 pub(crate) fn curve_report(
@@ -130,17 +130,17 @@ pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>])
     let mut reports: Vec<SequenceReport> = Vec::new();
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut positions: Vec<(f64, usize)> = Vec::new();
-    // Frames, each with the distance of its shape.
-    let mut shapes: Vec<Vec<(usize, f64)>> = Vec::new();
+    // Frames, each with the distance of its shape, and with its rise by the slope at a table's edge.
+    let [mut shapes, mut rises]: [Vec<Vec<(usize, f64)>>; 2] = Default::default();
     for (settled, simulated) in simulation.settled().zip(forces) {
-        let Settled { replica, frame, x, multi_stable } = settled;
+        let Settled { replica, frame, x, edge, multi_stable } = settled;
         let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
             let grid = &replica.specimen.grid;
             reports.push(SequenceReport {
                 name: replica.name.clone(),
                 kind: replica.kind,
                 frames: 0,
-                at_rest: replica.frames_at_rest,
+                at_rest: replica.skipped.len(),
                 planar: replica.planar,
                 nodes: [grid.columns, grid.rows],
                 force_rms: None,
@@ -156,6 +156,7 @@ pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>])
             sums.push([0.0; 4]);
             positions.push((0.0, 0));
             shapes.push(Vec::new());
+            rises.push(Vec::new());
             reports.len() - 1
         });
         let report = &mut reports[at];
@@ -192,35 +193,30 @@ pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>])
             });
         }
         // If a frame has several equilibria, the distance to one of them means nothing (Miguel et al. 2012, §6).
-        let compared = frame.observed.iter().filter(|_| !multi_stable);
-        let free: BTreeSet<usize> =
-            replica.cloth(frame).free_coordinates().iter().map(|(c, _)| c / 3).collect();
+        let compared = frame.points.iter().filter(|_| !multi_stable);
         let (mut squares, mut seen) = (0.0, 0);
-        for observed in compared {
-            for &node in &free {
-                let place = 3 * node..3 * node + 3;
-                let square: f64 =
-                    observed[place.clone()].iter().zip(&x[place]).map(|(o, x)| (o - x) * (o - x)).sum();
-                if square.is_finite() {
-                    squares += square;
-                    seen += 1;
-                }
-            }
+        for point in compared {
+            let off = |axis: usize| (point.position[axis] - point.placed(x, edge, axis)).powi(2);
+            squares += frame.compared_axes().iter().map(|&axis| off(axis)).sum::<f64>();
+            seen += 1;
         }
         positions[at].0 += squares;
         positions[at].1 += seen;
         if seen > 0 {
             shapes[at].push((frame.index, (squares / seen as f64).sqrt()));
         }
+        if let Some(edge) = edge {
+            rises[at].push((frame.index, edge.slope * frame.extension));
+        }
     }
-    for (((report, [up, up_square, down, down_square]), (square, seen)), shapes) in
-        reports.iter_mut().zip(sums).zip(positions).zip(shapes)
+    for ((((report, [up, up_square, down, down_square]), (square, seen)), shapes), rises) in
+        reports.iter_mut().zip(sums).zip(positions).zip(shapes).zip(rises)
     {
         let squares: f64 = report.forces.iter().map(|row| (row.measured - row.simulated).powi(2)).sum();
         let count = report.forces.len();
         report.force_rms = (count > 0).then(|| (squares / count as f64).sqrt());
         report.outliers = match count {
-            0 => shape_outliers(&shapes, report.extension),
+            0 => shape_outliers([&shapes, &rises], report.extension),
             _ => force_outliers(&report.forces),
         };
         report.position_rms = (seen > 0).then(|| (square / seen as f64).sqrt());
@@ -243,12 +239,12 @@ fn force_outliers(rows: &[ForceRow]) -> Vec<usize> {
     farthest_first(tracks.values().flat_map(|track| standing_out(track, 0.02 * largest)).collect())
 }
 
-/// Frames whose shape is farther from the simulated one than its neighbours are, by more than a fiftieth of the
-/// largest overhang, and by the limit of [`standing_out`].
+/// Frames whose shape is farther from the simulated one than its neighbours are, or leaves the table at another angle, by
+/// more than a fiftieth of the largest overhang, and by the limit of [`standing_out`].
 ///
-/// * `shapes` — frames with the root mean square distance of their nodes, m
-fn shape_outliers(shapes: &[(usize, f64)], overhang: f64) -> Vec<usize> {
-    farthest_first(standing_out(shapes, 0.02 * overhang))
+/// * `tracks` — frames with the root mean square distance of their points, and with their rise, m
+fn shape_outliers(tracks: [&[(usize, f64)]; 2], overhang: f64) -> Vec<usize> {
+    farthest_first(tracks.into_iter().flat_map(|track| standing_out(track, 0.02 * overhang)).collect())
 }
 
 /// Frames whose residual differs from the median of its neighbours by more than `least`, and by more than six robust

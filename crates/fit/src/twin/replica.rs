@@ -3,13 +3,22 @@
 //!
 //! Source: Miguel et al. 2012, §5.1. Held nodes, selection of frames and blending of shapes: docs/model.md.
 
+mod as_seen;
 mod blend;
 mod clips;
+mod edge_pose;
 mod force_component;
-mod table;
+mod layout;
+mod merging;
+mod overhang;
+mod parts;
+mod point;
+mod profile;
+mod skip;
 
 use crate::twin::in_place;
 use crate::twin::specimen::{Specimen, near_square};
+use as_seen::AsSeen;
 use blend::Blend;
 use clips::Grip;
 use cloth_data::error::{Error, Result};
@@ -19,13 +28,18 @@ use cloth_data::rectangle::FLAT_SLOPE;
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Model};
-use cloth_sim::mesh::{Diagonals, Grid};
-use nalgebra::Vector3;
-use std::collections::BTreeMap;
-use table::{Lines, Overhang};
+use cloth_sim::mesh::{Diagonals, Grid, Mesh};
+use layout::Layout;
+use nalgebra::{Vector2, Vector3};
+use std::borrow::Cow;
 
+pub use edge_pose::EdgePose;
 pub use force_component::ForceComponent;
-pub use table::TableHold;
+pub use merging::Merging;
+pub use overhang::Overhang;
+pub use parts::{Parts, TableHold};
+pub use point::{MeasuredPoint, Term};
+pub use skip::{Skip, SkippedFrame};
 
 /// In longer cells a diagonal lies within 22.5° of a yarn, and its spring would act as that yarn.
 const LONGEST_SPRING_CELL: f64 = 1.0 + std::f64::consts::SQRT_2;
@@ -37,26 +51,6 @@ const CLEAR: f64 = 1e-4;
 /// Bending strains up to this are rounding, 1/m; those of springs, which are dimensionless, are as small.
 const FLAT: f64 = 1e-9;
 
-/// Components and discretisation of a replica.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Parts {
-    /// Model of membrane and bending.
-    pub model: Model,
-    /// The components that store energy.
-    pub components: Vec<Component>,
-    /// kg/m².
-    pub areal_density: f64,
-    /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
-    pub nodes: Option<[usize; 2]>,
-    /// Split of the cells.
-    pub diagonals: Diagonals,
-    /// Constraint at a table.
-    pub table: TableHold,
-    /// All motion stays in the plane, and weight normal to it is left out: for parts without bending, which would
-    /// crumple in space under compression.
-    pub flat: bool,
-}
-
 /// A measured sequence prepared for simulation, in the specimen's own frame.
 #[derive(Debug)]
 pub struct Replica {
@@ -64,18 +58,18 @@ pub struct Replica {
     pub name: String,
     /// Kind of test.
     pub kind: Kind,
-    /// The grid.
+    /// The grid of the whole sheet. Off a table it serves the display; what is simulated is each frame's overhang.
     pub specimen: Specimen,
-    /// One cloth for every distinct set of held nodes.
+    /// The cloths: one between clips, one for every frame off a table.
     pub cloths: Vec<Cloth>,
     /// For each group of held nodes, a weight per node: 1 at its own nodes, 0 at the others', harmonic in between. It
     /// is the virtual displacement in which that group alone does work. Empty on a table.
     pub fields: Vec<Vec<f64>>,
     /// The used frames.
     pub frames: Vec<ReplicaFrame>,
-    /// Number of frames left out because the specimen was at rest or nothing was measured.
-    pub frames_at_rest: usize,
-    /// Vertices, over all frames, too far off a table's line to be used for its position.
+    /// Frames that take no part.
+    pub skipped: Vec<SkippedFrame>,
+    /// Vertices, over all frames, too far off the profile of an overhang to be used.
     pub vertices_left_out: usize,
     /// True if nodes move in the plane only: two unknowns per node.
     pub planar: bool,
@@ -87,13 +81,6 @@ pub struct Replica {
     pub areal_density: f64,
     /// Weight per area, N/m².
     pub weight: Vector3<f64>,
-    /// The lines along a table's edge.
-    lines: Option<Lines>,
-    /// Per node: noise of its coordinates relative to a vertex's; a node between vertices averages them.
-    pub spread: Vec<f64>,
-    /// Noise of the position of a held line on a table, relative to a vertex's; the line averages many vertices. 0
-    /// between clips, and if whitening is off.
-    pub held_spread: f64,
 }
 
 /// One frame of a replica.
@@ -109,13 +96,33 @@ pub struct ReplicaFrame {
     /// shear; length of the overhang at a table, m.
     pub extension: f64,
     /// Start state, 3 stacked coordinates per node, m: held nodes in place; the others blended between clips, or as
-    /// observed on a table, smoothed if the sheet bends as a cylinder.
+    /// observed on a table. An overhang is in the axes of its edge, its place 0.
     pub start: Vec<f64>,
     /// Observed positions of the nodes, 3 stacked coordinates per node, m; `None` without a measured shape, NaN for
     /// unobserved nodes.
     pub observed: Option<Vec<f64>>,
     /// Measured components of clip forces.
     pub forces: Vec<ForceComponent>,
+    /// Measured points of the free cloth.
+    pub points: Vec<MeasuredPoint>,
+    /// The points merged, off a table.
+    pub merging: Option<Box<Merging>>,
+    /// The overhang, off a table.
+    pub overhang: Option<Box<Overhang>>,
+    /// Flexural rigidity by Peirce's formula, N·m, and a typical curvature, 1/m, of an overhang.
+    pub peirce: Option<[f64; 2]>,
+}
+
+impl ReplicaFrame {
+    /// The axes compared of the points: off a table those that bending moves.
+    pub fn compared_axes(&self) -> &'static [usize] {
+        if self.overhang.is_some() { &[0, 2] } else { &[0, 1, 2] }
+    }
+
+    /// The pose of the edge at the start, off a table.
+    pub fn edge(&self) -> Option<EdgePose> {
+        self.overhang.as_ref().map(|overhang| overhang.pose)
+    }
 }
 
 impl Replica {
@@ -151,20 +158,13 @@ impl Replica {
             cloths: Vec::new(),
             fields: Vec::new(),
             frames: Vec::new(),
-            frames_at_rest: 0,
+            skipped: Vec::new(),
             vertices_left_out: 0,
             planar: false,
             areal_density: parts.areal_density,
             weight: gravity * parts.areal_density,
-            lines: None,
             force_noise: noise.and_then(|noise| noise.force_n),
             position_noise: noise.and_then(|noise| noise.position_m),
-            spread: specimen
-                .samples
-                .iter()
-                .map(|s| s.weights.iter().map(|w| w * w).sum::<f64>().sqrt())
-                .collect(),
-            held_spread: 0.0,
             specimen,
         };
         match (sequence.clips.is_empty(), sequence.table) {
@@ -185,7 +185,6 @@ impl Replica {
                 "clips that move apart, with their forces (clips.csv, forces.csv), or shapes with an overhang (positions.npy)",
             ));
         }
-        replica.frames_at_rest = sequence.frames.len() - replica.frames.len();
         Ok(replica)
     }
 
@@ -194,30 +193,9 @@ impl Replica {
         &self.cloths[frame.cloth]
     }
 
-    /// Flexural rigidity by Peirce's formula from a frame's overhang, N·m, and a typical curvature there, 1/m; `None`
-    /// without an overhang.
-    pub fn peirce(&self, frame: &ReplicaFrame) -> Option<[f64; 2]> {
-        let chord = self.lines.as_ref()?.chord(&frame.start)?;
-        let weight = self.weight.norm();
-        let drop = chord.dot(&self.weight) / weight;
-        let angle = (drop / chord.norm()).asin().clamp(0.01, 1.5);
-        let length = frame.extension;
-        let rigidity = weight * length.powi(3) * (0.5 * angle).cos() / (8.0 * angle.tan());
-        Some([rigidity, (2.0 * angle / length).max(f64::MIN_POSITIVE)])
-    }
-
-    /// The observed free coordinates of a frame: index of the unknown, and of the coordinate.
-    pub fn seen_unknowns<'r>(&'r self, frame: &'r ReplicaFrame) -> impl Iterator<Item = (usize, usize)> + 'r {
-        let free = self.cloth(frame).free_coordinates();
-        frame.observed.iter().flat_map(move |observed| {
-            let seen = free.iter().filter(|(coordinate, _)| observed[*coordinate].is_finite());
-            seen.map(|&(coordinate, unknown)| (unknown, coordinate))
-        })
-    }
-
     /// True if the sheet lies on a table.
     pub fn is_on_table(&self) -> bool {
-        self.lines.is_some()
+        self.kind.holding() == Holding::Table
     }
 
     /// True if the replica carries information on a component. A sheet that bends as a cylinder leaves the hinges
@@ -227,26 +205,45 @@ impl Replica {
             let strains = self.frames.iter().flat_map(|f| self.cloth(f).strains(component, &f.start));
             component.is_bending() && strains.into_iter().any(|[strain, _]| strain.abs() > FLAT)
         };
-        let rolls = self.lines.as_ref().is_some_and(|lines| !lines.tied().is_empty());
+        let rolls = self.frames.iter().any(|frame| frame.overhang.is_some());
         !rolls || bends(component) || !Component::ALL.into_iter().any(bends)
     }
 
-    /// The sheet at rest, 3 stacked coordinates per node, m.
-    pub fn rest(&self) -> Vec<f64> {
-        self.specimen.mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
+    /// The mesh simulated in a frame.
+    pub fn mesh<'r>(&'r self, frame: &'r ReplicaFrame) -> &'r Mesh {
+        frame.overhang.as_ref().map_or(&self.specimen.mesh, |overhang| overhang.mesh())
+    }
+
+    /// The mesh of a frame at rest, 3 stacked coordinates per node, m.
+    pub fn rest(&self, frame: &ReplicaFrame) -> Vec<f64> {
+        self.mesh(frame).coordinates()
+    }
+
+    /// A simulated state on the grid of the whole sheet, in the specimen's axes: 3 stacked coordinates per node, m.
+    ///
+    /// * `edge` — pose of the sheet at the edge, off a table
+    pub fn displayed<'x>(
+        &self,
+        frame: &ReplicaFrame,
+        x: &'x [f64],
+        edge: Option<&EdgePose>,
+    ) -> Cow<'x, [f64]> {
+        let (Some(overhang), Some(edge)) = (&frame.overhang, edge) else { return Cow::Borrowed(x) };
+        let rest: Vec<Vector2<f64>> = self.specimen.mesh.positions.iter().map(|p| p.xy()).collect();
+        Cow::Owned(rest.into_iter().flat_map(|at| overhang.displayed(at, x, edge).data.0[0]).collect())
     }
 
     /// True if a sheet between clips moves in space and was not observed to stay flat.
     pub fn may_buckle(&self) -> bool {
         let unsure =
             |frame: &ReplicaFrame| flatness(frame.observed.as_ref(), self.position_noise) != Some(true);
-        !self.planar && self.lines.is_none() && self.frames.iter().any(unsure)
+        !self.planar && !self.is_on_table() && self.frames.iter().any(unsure)
     }
 
     /// True if a sheet between clips was observed to leave its plane, and may do so in the simulation.
     pub fn is_buckled(&self, frame: &ReplicaFrame) -> bool {
         let seen = flatness(frame.observed.as_ref(), self.position_noise) == Some(false);
-        seen && !self.planar && self.lines.is_none()
+        seen && !self.planar && !self.is_on_table()
     }
 
     fn hold_by_clips(
@@ -285,7 +282,7 @@ impl Replica {
         self.cloths.push(cloth(
             sequence,
             parts,
-            specimen,
+            &specimen.mesh,
             gravity,
             &held.collect::<Vec<_>>(),
             &[],
@@ -313,15 +310,30 @@ impl Replica {
         {
             // An unstretched sheet without shear stiffness is singular: such a frame carries no information.
             if extensions[index] <= 1e-3 * largest {
+                self.skipped.push(SkippedFrame { frame: index, skip: Skip::AtRest });
                 continue;
             }
             let forces = grip.forces(sequence, frame, specimen, &weights, self.planar);
             if forces.is_empty() {
+                self.skipped.push(SkippedFrame { frame: index, skip: Skip::NoForce });
                 continue;
             }
             let phase = frame.phase.unwrap_or_else(|| phase_of(&extensions, index));
             let extension = extensions[index];
-            self.frames.push(ReplicaFrame { index, cloth: 0, phase, extension, start, observed, forces });
+            let points = node_points(&self.cloths[0], &self.specimen, observed.as_deref());
+            self.frames.push(ReplicaFrame {
+                index,
+                cloth: 0,
+                phase,
+                extension,
+                start,
+                observed,
+                forces,
+                points,
+                merging: None,
+                overhang: None,
+                peirce: None,
+            });
         }
         Ok(())
     }
@@ -333,45 +345,95 @@ impl Replica {
         gravity: Vector3<f64>,
         shapes: Vec<Option<Vec<f64>>>,
     ) -> Result<()> {
-        let lines = Lines::new(sequence, &self.specimen, &shapes, parts.table)?;
-        let overhangs: Vec<Option<Overhang>> = shapes
-            .iter()
-            .map(|shape| shape.as_ref().and_then(|shape| lines.overhang(&self.specimen, shape)))
-            .collect();
-        let lengths: Vec<f64> =
-            overhangs.iter().map(|overhang| overhang.as_ref().map_or(0.0, |o| o.length)).collect();
-        let mut cloth_of: BTreeMap<usize, usize> = BTreeMap::new();
-        for (index, ((frame, overhang), observed)) in
-            sequence.frames.iter().zip(overhangs).zip(shapes).enumerate()
-        {
-            let Some(Overhang { held, length, left_out, start }) = overhang else { continue };
-            self.vertices_left_out += left_out;
-            let cloth = match cloth_of.get(&held) {
-                Some(&known) => known,
-                None => {
-                    let nodes: Vec<Held> = lines.held(held).collect();
-                    let tied = lines.tied();
-                    self.cloths.push(cloth(sequence, parts, &self.specimen, gravity, &nodes, tied, false)?);
-                    cloth_of.insert(held, self.cloths.len() - 1);
-                    self.cloths.len() - 1
+        let layout = Layout::new(sequence, &self.specimen)?;
+        // Weight in the axes of the edge, in which an overhang is simulated.
+        let turned = layout.axes.rotation * gravity;
+        let mut lengths = vec![0.0; sequence.frames.len()];
+        for (index, (frame, observed)) in sequence.frames.iter().zip(shapes).enumerate() {
+            let place = self.cloths.len();
+            let made = match (parts.table, &observed) {
+                (_, None) => Err(Skip::NoShape),
+                (TableHold::FoundEdge, Some(_)) => {
+                    let found = Overhang::new(&layout, sequence, &self.specimen, frame, &self.weight, parts)?;
+                    found.map(|overhang| {
+                        let held = overhang.held();
+                        let cloth =
+                            cloth(sequence, parts, overhang.mesh(), turned, &held, overhang.tied(), false);
+                        self.vertices_left_out += overhang.left_out;
+                        let start = overhang.start(overhang.pose.slope);
+                        (cloth, overhang.length, start, overhang.peirce, Some(Box::new(overhang)))
+                    })
+                }
+                (TableHold::AsSeen, Some(shape)) => as_seen::held(&layout, &self.specimen, shape).map(
+                    |AsSeen { held, length, chord, start }| {
+                        let cloth = cloth(sequence, parts, &self.specimen.mesh, gravity, &held, &[], false);
+                        let weight = layout.axes.rotation * self.weight;
+                        let peirce = overhang::peirce(Vector2::new(chord.x, chord.z), length, &weight);
+                        (cloth, length, start, peirce, None)
+                    },
+                ),
+            };
+            let (cloth, length, start, peirce, overhang) = match made {
+                Ok(made) => made,
+                Err(skip) => {
+                    self.skipped.push(SkippedFrame { frame: index, skip });
+                    continue;
                 }
             };
-            let phase = frame.phase.unwrap_or_else(|| phase_of(&lengths, index));
-            let (extension, forces) = (length, Vec::new());
-            self.frames.push(ReplicaFrame { index, cloth, phase, extension, start, observed, forces });
+            let cloth = cloth?;
+            let points = match &overhang {
+                Some(overhang) => overhang.points(&cloth),
+                None => node_points(&cloth, &self.specimen, observed.as_deref()),
+            };
+            let merging = overhang.as_ref().map(|overhang| Box::new(overhang.merging(&points, &cloth)));
+            self.cloths.push(cloth);
+            lengths[index] = length;
+            self.frames.push(ReplicaFrame {
+                index,
+                cloth: place,
+                phase: frame.phase.unwrap_or(Phase::Hold),
+                extension: length,
+                start,
+                observed,
+                forces: Vec::new(),
+                points,
+                merging,
+                overhang,
+                peirce: Some(peirce),
+            });
         }
-        if parts.table.whitened {
-            self.held_spread = lines.spread(&self.spread);
+        for frame in &mut self.frames {
+            frame.phase =
+                sequence.frames[frame.index].phase.unwrap_or_else(|| phase_of(&lengths, frame.index));
         }
-        self.lines = Some(lines);
         Ok(())
     }
+}
+
+/// The free nodes that were seen, as measured points.
+fn node_points(cloth: &Cloth, specimen: &Specimen, observed: Option<&[f64]>) -> Vec<MeasuredPoint> {
+    let is_free = |node: usize| (0..3).any(|axis| cloth.unknown(3 * node + axis).is_some());
+    let place = |shape: &[f64], node: usize| Vector3::from_column_slice(&shape[3 * node..3 * node + 3]);
+    let point = |shape: &[f64], node: usize| MeasuredPoint {
+        source: node,
+        terms: vec![Term::new(node, 1.0, cloth)],
+        place: 0.0,
+        across: 0.0,
+        position: place(shape, node),
+        // A node between vertices averages them.
+        spread: specimen.samples[node].weights.iter().map(|w| w * w).sum::<f64>().sqrt(),
+    };
+    observed.map_or(Vec::new(), |shape| {
+        let seen = (0..specimen.mesh.len())
+            .filter(|&node| is_free(node) && place(shape, node).iter().all(|c| c.is_finite()));
+        seen.map(|node| point(shape, node)).collect()
+    })
 }
 
 fn cloth(
     sequence: &Sequence,
     parts: &Parts,
-    specimen: &Specimen,
+    mesh: &Mesh,
     gravity: Vector3<f64>,
     held: &[Held],
     tied: &[Vec<usize>],
@@ -381,7 +443,7 @@ fn cloth(
     let bends = |component: &Component| component.is_bending() && planar;
     let components: Vec<Component> = parts.components.iter().copied().filter(|c| !bends(c)).collect();
     Cloth::new(&Problem {
-        mesh: &specimen.mesh,
+        mesh,
         model: parts.model,
         components: &components,
         areal_density: parts.areal_density,
@@ -495,6 +557,7 @@ mod tests {
                 areal_density: 0.2,
                 nodes: Some(nodes),
                 diagonals: Diagonals::Forward,
+                refinement: 1,
                 table: TableHold::default(),
                 flat: false,
             };

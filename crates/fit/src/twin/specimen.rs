@@ -67,6 +67,19 @@ impl Specimen {
         inverse.rotation * self.mesh.positions[node] + inverse.translation.vector
     }
 
+    /// Material coordinates of a point of the rest rectangle, m: bilinear in the grid's cells, and beyond its border.
+    pub fn material(&self, at: Vector2<f64>) -> Vector2<f64> {
+        let [dx, dy] = self.grid.cell();
+        let place = |at: f64, cell: f64, nodes: usize| {
+            let first = (at / cell).floor().clamp(0.0, (nodes - 2) as f64);
+            (first as usize, at / cell - first)
+        };
+        let ((column, u), (row, v)) = (place(at.x, dx, self.grid.columns), place(at.y, dy, self.grid.rows));
+        let corner = |i: usize, j: usize| self.mesh.material[self.grid.node(column + i, row + j)];
+        (corner(0, 0) * (1.0 - u) + corner(1, 0) * u) * (1.0 - v)
+            + (corner(0, 1) * (1.0 - u) + corner(1, 1) * u) * v
+    }
+
     /// A world position in the specimen's frame.
     pub fn place(&self, world: &Vector3<f64>) -> Vector3<f64> {
         self.frame.rotation * world + self.frame.translation.vector

@@ -18,16 +18,14 @@ use cloth_fit::twin::replica::TableHold;
 type Published = (&'static str, fn(Settings) -> Settings);
 
 /// Differences from the published method, applied one at a time.
-const DIFFERENCES: [Published; 9] = [
+const DIFFERENCES: [Published; 7] = [
     ("mixed Newton", |s| Settings { equilibrium: damped(), ..s }),
     ("start at the last equilibrium", |s| Settings { solve_start: SolveStart::Measured, ..s }),
     ("start from measurements", |s| Settings { first_stiffness: FirstStiffness::Constant, ..s }),
     ("stable curves", |s| Settings { constraints: Constraints::ControlPoints, ..s }),
     ("trust region, full convergence", |s| Settings { outer: s.clone().as_published().outer, ..s }),
     ("growth after a second try", |s| Settings { growth: GrowthRule::PUBLISHED, ..s }),
-    ("lines held past the edge", |s| Settings { table: TableHold { past_edge: 0, ..s.table }, ..s }),
-    ("lines that move as a whole", |s| Settings { table: TableHold { cylinder: false, ..s.table }, ..s }),
-    ("errors of what is held", |s| Settings { table: TableHold { whitened: false, ..s.table }, ..s }),
+    ("edge that is found", |s| Settings { table: TableHold::AsSeen, ..s }),
 ];
 
 /// Ablation of fits: control points, second pass, and differences from the published method.

@@ -50,6 +50,8 @@ pub enum Status {
         /// Relative decrease that the linear model still predicts.
         promised: f64,
     },
+    /// The mean over several descriptions of the parameters no longer moves.
+    MeanFound,
     /// No step, however short, lowered the sum of squares as predicted.
     Stalled {
         /// The error of the last trial point, if it could not be evaluated.
@@ -75,7 +77,7 @@ pub enum Status {
 impl Status {
     /// True if the point is a minimum, within the tolerances.
     pub fn converged(&self) -> bool {
-        matches!(self, Self::SmallGain { .. } | Self::SmallStep { .. } | Self::Noise { .. })
+        matches!(self, Self::SmallGain { .. } | Self::SmallStep { .. } | Self::Noise { .. } | Self::MeanFound)
     }
 }
 
@@ -89,6 +91,7 @@ impl fmt::Display for Status {
             Self::Noise { promised } => {
                 write!(f, "the possible gain, a share of {promised:.0e}, is below the noise of the residual")
             }
+            Self::MeanFound => write!(f, "the mean over its descriptions is found"),
             Self::Stalled { reason: None } => write!(f, "no step, however short, lowered the residual"),
             Self::Stalled { reason: Some(reason) } => {
                 write!(f, "no step, however short, could be evaluated: {reason}")

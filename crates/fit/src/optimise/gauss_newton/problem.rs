@@ -1,5 +1,6 @@
 //! The problem: residuals with their derivative, under linear inequalities.
 
+use crate::optimise::least_squares::{LeastSquares, Status as StepStatus};
 use crate::optimise::robust::Robust;
 use nalgebra::{DMatrix, DVector};
 
@@ -59,6 +60,25 @@ impl LinearConstraints {
     /// All of n-space.
     pub fn everywhere(n: usize) -> Self {
         Self { rows: DMatrix::zeros(0, n), bounds: DVector::zeros(0), roughness: None }
+    }
+
+    /// A point itself, or the nearest one that satisfies the inequalities.
+    ///
+    /// # Errors
+    /// No such point.
+    pub fn nearest(&self, point: &DVector<f64>) -> Result<DVector<f64>, StepStatus> {
+        let n = point.len();
+        let slack = &self.rows * point - &self.bounds;
+        if slack.iter().all(|&slack| slack >= 0.0) {
+            return Ok(point.clone());
+        }
+        let mut nearest = LeastSquares::new(DMatrix::identity(n, n), point.clone());
+        (nearest.rows, nearest.bounds) = (self.rows.clone(), self.bounds.clone());
+        let solution = nearest.solve();
+        match solution.status {
+            StepStatus::Optimal | StepStatus::Inaccurate { .. } => Ok(solution.point),
+            status => Err(status),
+        }
     }
 
     /// Points of several domains, one below the other.

@@ -1,0 +1,108 @@
+//! Merges the points of a cylinder: what thousands of them say of its few lines.
+//!
+//! ```text
+//! simulated coordinates of m points   y = A z      z: coordinates of the L lines, place and tilt of the edge
+//! AᵀA = V Λ Vᵀ      ‖y − A z‖² = ‖Λ^½ Vᵀ z − Λ^(−½) Vᵀ Aᵀ y‖² + what no cylinder meets
+//! ```
+//!
+//! Rows of Λ^½ Vᵀ are points too: as many as lines, each with unit noise, and least squares on them is least squares on
+//! all points. What is left is noise alone, and measures it.
+
+use super::point::{MeasuredPoint, Term};
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// Relative eigenvalue of AᵀA below which the points do not see a combination.
+const UNSEEN: f64 = 1e-12;
+
+/// The coordinates compared off a table: outward and up.
+const AXES: [usize; 2] = [0, 2];
+
+/// Points off a table, merged.
+#[derive(Debug, Clone)]
+pub struct Merging {
+    /// The merged points.
+    pub points: Vec<MeasuredPoint>,
+    /// Sum of squares that no cylinder on this grid meets, m².
+    pub left: f64,
+    /// Its degrees of freedom.
+    pub freedom: usize,
+    /// Nodes that stand for the lines, in order.
+    nodes: Vec<usize>,
+    /// Λ^(−½) Vᵀ.
+    back: DMatrix<f64>,
+}
+
+impl Merging {
+    /// Merges points.
+    ///
+    /// * `lines` — a term of weight 1 for every line
+    pub(super) fn new(points: &[MeasuredPoint], lines: &[Term]) -> Self {
+        let nodes: Vec<usize> = lines.iter().map(|line| line.node).collect();
+        let columns = nodes.len() + 2;
+        let mut square = DMatrix::zeros(columns, columns);
+        for point in points {
+            let row = row(&nodes, point);
+            for &(i, a) in &row {
+                row.iter().for_each(|&(j, b)| square[(i, j)] += a * b);
+            }
+        }
+        // Columns of one length: tilts are per metre.
+        let scale = DVector::from_fn(columns, |i, _| f64::max(square[(i, i)], f64::MIN_POSITIVE).sqrt());
+        let scaled = DMatrix::from_fn(columns, columns, |i, j| square[(i, j)] / (scale[i] * scale[j]));
+        let eigen = scaled.symmetric_eigen();
+        let largest = eigen.eigenvalues.amax();
+        let seen: Vec<usize> = (0..columns).filter(|&i| eigen.eigenvalues[i] > UNSEEN * largest).collect();
+        let weight = |i: usize, j: usize| {
+            eigen.eigenvectors[(j, seen[i])] * eigen.eigenvalues[seen[i]].sqrt() * scale[j]
+        };
+        let back = DMatrix::from_fn(seen.len(), columns, |i, j| {
+            eigen.eigenvectors[(j, seen[i])] / (eigen.eigenvalues[seen[i]].sqrt() * scale[j])
+        });
+        let merged = |i: usize| MeasuredPoint {
+            source: i,
+            terms: lines.iter().enumerate().map(|(j, line)| Term { weight: weight(i, j), ..*line }).collect(),
+            place: weight(i, nodes.len()),
+            across: weight(i, nodes.len() + 1),
+            position: Vector3::zeros(),
+            spread: 1.0,
+        };
+        let merged = (0..seen.len()).map(merged).collect();
+        let freedom = AXES.len() * points.len().saturating_sub(seen.len());
+        let mut merging = Self { points: merged, left: 0.0, freedom, nodes, back };
+        let (positions, left) = merging.of(points, |point, axis| points[point].position[axis]);
+        merging.left = left;
+        for (point, position) in merging.points.iter_mut().zip(positions) {
+            AXES.iter().zip(position).for_each(|(&axis, value)| point.position[axis] = value);
+        }
+        merging
+    }
+
+    /// Merges a value of every point and axis; returns those of the merged points, outward and up, and the sum of squares
+    /// left.
+    pub fn of(&self, points: &[MeasuredPoint], value: impl Fn(usize, usize) -> f64) -> (Vec<[f64; 2]>, f64) {
+        let mut found = vec![[0.0; 2]; self.points.len()];
+        let mut left = 0.0;
+        for (side, axis) in AXES.into_iter().enumerate() {
+            let mut product = DVector::zeros(self.back.ncols());
+            let mut square = 0.0;
+            for (index, point) in points.iter().enumerate() {
+                let value = value(index, axis);
+                square += value * value;
+                row(&self.nodes, point).into_iter().for_each(|(i, a)| product[i] += a * value);
+            }
+            let merged = &self.back * product;
+            left += (square - merged.norm_squared()).max(0.0);
+            found.iter_mut().zip(merged.iter()).for_each(|(found, value)| found[side] = *value);
+        }
+        (found, left)
+    }
+}
+
+/// A point's row of A.
+fn row(nodes: &[usize], point: &MeasuredPoint) -> Vec<(usize, f64)> {
+    let lines = point.terms.iter().filter_map(|term| {
+        let line = nodes.iter().position(|&node| node == term.node)?;
+        Some((line, term.weight))
+    });
+    lines.chain([(nodes.len(), point.place), (nodes.len() + 1, point.across)]).collect()
+}
