@@ -9,7 +9,8 @@
 //! Five control points fit 900ε + 1.6e5ε³ (to 6 %) and 8(e^{10ε} − 1) (to 25 %) within 0.7 %, 1.33(e^{60ε} − 1) (to 6
 //! %) within 2 %, as relative L2 of the stress over the visited range; with 3 mN of noise within 1.5, 1.5 and 3 %. A
 //! law whose stiffness falls and rises again, so that a line fits no better than a constant, still gets its control
-//! points. For a truth that the curve can represent, the 95 % band contains it for 90–99 % of rows and seeds.
+//! points. For a truth that five points can represent, the 95 % band contains it for at least 95 % of rows and seeds: it
+//! also holds what five points might not follow.
 
 use cloth_data::frame::MeasurementSet;
 use cloth_fit::stage::report::StageReport;
@@ -120,12 +121,12 @@ fn mean_coverage(seeds: u64, nodes: [usize; 2]) -> f64 {
 #[test]
 fn bands_hold_a_truth_that_the_curve_can_represent() {
     let held = mean_coverage(20, [7, 7]);
-    assert!((0.90..=0.99).contains(&held), "{held}");
+    assert!(held >= 0.95, "{held}");
 }
 
 #[test]
 #[ignore = "release: 100 seeds on 25x25 nodes"]
 fn bands_hold_a_truth_that_the_curve_can_represent_in_full() {
     let held = mean_coverage(100, [25, 25]);
-    assert!((0.90..=0.99).contains(&held), "{held}");
+    assert!(held >= 0.95, "{held}");
 }

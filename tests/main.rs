@@ -9,6 +9,7 @@ mod contradiction;
 mod coverage;
 mod droop;
 mod faults;
+mod free_corners;
 mod metamorphic;
 mod outliers;
 mod published;

@@ -19,7 +19,7 @@ use cloth_fit::stage::report::StageReport;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::material::{Component, Curves, Model};
 use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
-use fit_cloth_tests::stress_error;
+use fit_cloth_tests::{coverage, stress_error};
 
 fn measure(fabric: &KnownFabric, full_noise: bool) -> MeasurementSet {
     Rig { noise: full_noise, cord_hysteresis: full_noise, ..Rig::default() }.measure(fabric).unwrap()
@@ -38,6 +38,14 @@ fn error(stage: &StageReport, truth: &Curves) -> f64 {
     stress_error(&stage.curve.samples, &|x| curve.stress(scale * x))
 }
 
+/// Share of the rows whose band holds the truth.
+fn held(stage: &StageReport, truth: &Curves) -> f64 {
+    let component = stage.components[0];
+    let curve = truth.get(component).unwrap();
+    let scale = if component.is_bending() { HINGE_STRAIN_PER_CURVATURE } else { 1.0 };
+    coverage(&stage.curve.samples, &|x| curve.stress(scale * x))
+}
+
 /// Fits and validates the four fabrics.
 fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
     for name in KnownFabric::names() {
@@ -49,9 +57,10 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
             let stage = report.stage(component).unwrap();
             let error = error(stage, &truth);
             println!(
-                "{:18} {component:13} noise {full_noise:5}: {:5.2} %, {} points, {:.2} s",
+                "{:18} {component:13} noise {full_noise:5}: {:5.2} %, truth inside {:.2}, {} points, {:.2} s",
                 name,
                 100.0 * error,
+                held(stage, &truth),
                 stage.curve.curve.len(),
                 stage.seconds
             );

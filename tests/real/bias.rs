@@ -35,7 +35,7 @@ use cloth_fit::incremental::{Stage, fit};
 use cloth_fit::judge::prediction::predict;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::twin::specimen::Specimen;
+use cloth_fit::twin::specimen::{Cells, Specimen};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
 use cloth_sim::mesh::Diagonals;
@@ -168,7 +168,11 @@ fn glass_is_a_bias_strip_with_the_forces_and_angles_of_its_table() {
         );
     }
     // Square cells: their diagonals run along the yarns.
-    let specimen = Specimen::new(sequence, None, Diagonals::Crossed).unwrap();
+    let specimen = Specimen::new(
+        sequence,
+        &Cells { nodes: None, diagonals: Diagonals::Crossed, refinement: 1, to_clips: true },
+    )
+    .unwrap();
     let cells = specimen.grid.cell();
     println!("glass: {} × {} nodes", specimen.grid.columns, specimen.grid.rows);
     assert!((cells[0] / cells[1] - 1.0).abs() < 1e-9);

@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use cloth_data::io::{read_set, write_set};
     use cloth_data::measure::{bend_profile, tip_deflection};
-    use cloth_fit::twin::specimen::Specimen;
+    use cloth_fit::twin::specimen::{Cells, Specimen};
 
     const RIGIDITY: f64 = 2e-5;
 
@@ -196,7 +196,16 @@ mod tests {
         for kind in [Kind::BendWeft, Kind::BendWarp, Kind::BendBias] {
             let sequence = cantilever(kind, &overhangs, None).sequence();
             // In the outward direction every second measured vertex is a node.
-            let specimen = Specimen::new(&sequence, Some([41, 41]), Diagonals::Alternating).unwrap();
+            let specimen = Specimen::new(
+                &sequence,
+                &Cells {
+                    nodes: Some([41, 41]),
+                    diagonals: Diagonals::Alternating,
+                    refinement: 1,
+                    to_clips: true,
+                },
+            )
+            .unwrap();
             for (frame, overhang) in sequence.frames[1..].iter().zip(&overhangs) {
                 let positions = frame.positions.as_ref().unwrap();
                 let nodes: Vec<_> =

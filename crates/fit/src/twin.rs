@@ -1,5 +1,6 @@
 //! Simulated counterparts of measured sequences.
 
+mod lines;
 mod placement;
 pub mod replica;
 pub mod specimen;

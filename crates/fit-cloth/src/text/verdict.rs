@@ -83,10 +83,25 @@ fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
         false => [format!("strain {place:.4}"), "stress".into()],
     };
     let said = format!(
-        "the 95 % band is widest at {at}, ± {} of the largest {of}: more frames there would narrow it most",
-        sure(share)
+        "the 95 % band is widest at {at}, ± {} of the largest {of}{}: more frames there would narrow it most",
+        sure(share),
+        parts(stage)
     );
     reasons.is_empty().then_some(said)
+}
+
+/// The sources of the widest band, the largest first, as shares of the largest stress.
+fn parts(stage: &StageReport) -> String {
+    let largest = stage.curve.samples.iter().fold(f64::MIN_POSITIVE, |most, row| most.max(row.stress.abs()));
+    let mut parts: Vec<(f64, String)> = stage
+        .curve
+        .band
+        .iter()
+        .map(|(source, half)| (half / largest, format!("{source} {}", sure(half / largest))))
+        .collect();
+    parts.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let parts: Vec<String> = parts.into_iter().map(|(_, part)| part).collect();
+    if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
 }
 
 /// Skipped frames, and frames whose positions are ambiguous.

@@ -4,14 +4,35 @@
 //! y_h = y + C h² + …      y − y_h = (y_h' − y_h)/(1 − (h'/h)²)      y: continuum, h: cell, h' of the finer grid
 //! ```
 //!
-//! The sum is added to what is simulated on the working grid, and the fit goes on. Source: Fox 1947; Pereyra 1966.
+//! The sum is added to what is simulated on the working grid, and the fit goes on. Between clips a few frames of a
+//! sequence are corrected, the others by their extension in between. Source: Fox 1947; Pereyra 1966.
 
 use super::frames::Equilibria;
+use super::observation::Objective;
 use super::state::State;
 use crate::twin::replica::{MeasuredPoint, Replica, ReplicaFrame};
+use cloth_data::locator::Locator;
 use cloth_sim::equilibrium::{Solver, Status};
+use cloth_sim::material::Curves;
+use nalgebra::{DVector, Vector2, Vector3};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Frames of a sequence between clips that are corrected.
+const SAMPLES: usize = 4;
+
+/// A finer equilibrium is another one if a node lies farther from the coarser one than this share of a cell.
+const OTHER_SHAPE: f64 = 0.5;
+
+/// The correction of one frame between clips.
+struct Corrected {
+    /// Index among all frames.
+    place: usize,
+    /// Of the forces, N.
+    forces: Vec<f64>,
+    /// The finer equilibrium, and what of it was interpolated.
+    finer: [Vec<f64>; 2],
+}
 
 impl<'a> Equilibria<'a> {
     /// Corrects by replicas of the same sequences on finer grids.
@@ -32,47 +53,205 @@ impl<'a> Equilibria<'a> {
             return;
         }
         let curves = self.curves();
-        let correction = |(&(index, place), state): (&(usize, usize), &State)| -> Option<Vec<f64>> {
-            let replica = &self.replicas[index];
-            let frame = &replica.frames[place];
-            let finer = self.finer.iter().find(|finer| finer.name == replica.name)?;
-            let fine = finer.frames.iter().find(|fine| fine.index == frame.index)?;
-            let [coarse_overhang, fine_overhang] = [frame.overhang.as_ref()?, fine.overhang.as_ref()?];
-            let simulate = |replica: &Replica, frame: &ReplicaFrame, mut x: Vec<f64>| {
-                let mut solver = Solver::new(replica.cloth(frame));
-                let found = solver.solve(&curves, &mut x, &self.task.settings);
-                self.meter.add(&found);
-                // The pose moves both grids alike.
-                let shape = |point: &MeasuredPoint| -> Vec<f64> {
-                    frame.compared_axes().iter().map(|&axis| point.coordinate(&x, axis)).collect()
-                };
-                (found.status == Status::Converged)
-                    .then(|| frame.points.iter().flat_map(shape).collect::<Vec<_>>())
-            };
-            let edge = state.edge?;
-            let mut x = state.x.clone();
-            coarse_overhang.hold(edge.slope, &mut x);
-            let mut fine_x = fine_overhang.of(coarse_overhang, &x);
-            fine_overhang.hold(edge.slope, &mut fine_x);
-            let coarse = simulate(replica, frame, x)?;
-            let fine = simulate(finer, fine, fine_x)?;
-            let ratio = fine_overhang.grid.cell()[0] / coarse_overhang.grid.cell()[0];
-            let extrapolated = 1.0 / (1.0 - ratio * ratio);
-            let axes = frame.compared_axes().len();
-            let of_point: Vec<f64> =
-                coarse.iter().zip(&fine).map(|(coarse, fine)| extrapolated * (fine - coarse)).collect();
-            Some(match (&frame.merging, self.task.robust) {
-                (Some(merging), None) => {
-                    let value = |point: usize, axis: usize| of_point[axes * point + axis / 2];
-                    merging.of(&frame.points, value).0.into_flattened()
+        let corrections: Vec<Option<Vec<f64>>> = match self.task.objective {
+            Objective::Positions => {
+                let frames = self.frames.par_iter().zip(&self.states);
+                frames
+                    .map(|(&(index, place), state)| self.of_overhang(&curves, index, place, state))
+                    .collect()
+            }
+            Objective::Forces => {
+                let samples = self.samples().into_par_iter();
+                let corrected: Vec<Corrected> =
+                    samples.filter_map(|place| self.of_clips(&curves, place)).collect();
+                let corrections =
+                    (0..self.frames.len()).map(|place| self.between(&corrected, place)).collect();
+                for Corrected { place, finer, .. } in corrected {
+                    self.states[place].finer = Some(Arc::new(finer));
                 }
-                _ => of_point,
-            })
+                corrections
+            }
         };
-        let corrections: Vec<Option<Vec<f64>>> =
-            self.frames.par_iter().zip(&self.states).map(correction).collect();
         for (state, correction) in self.states.iter_mut().zip(corrections) {
             correction.into_iter().for_each(|correction| state.correction = Arc::new(correction));
         }
+    }
+
+    /// The correction in all residuals, in their units; zero where there is none.
+    pub fn correction(&self) -> DVector<f64> {
+        let mut all = Vec::new();
+        for (&(index, place), state) in self.frames.iter().zip(&self.states) {
+            let replica = &self.replicas[index];
+            for (row, observation) in self.observations(&replica.frames[place]).iter().enumerate() {
+                let value = state.correction.get(row).unwrap_or(&0.0);
+                all.push(value / (observation.spread * self.scale(replica)));
+            }
+        }
+        DVector::from_vec(all)
+    }
+
+    /// The same frame on the finer grid.
+    fn finer(&self, replica: &Replica, frame: &ReplicaFrame) -> Option<(&'a Replica, &'a ReplicaFrame)> {
+        let finer = self.finer.iter().find(|finer| finer.name == replica.name)?;
+        Some((finer, finer.frames.iter().find(|fine| fine.index == frame.index)?))
+    }
+
+    /// Correction of the positions in a frame off a table.
+    fn of_overhang(&self, curves: &Curves, index: usize, place: usize, state: &State) -> Option<Vec<f64>> {
+        let replica = &self.replicas[index];
+        let frame = &replica.frames[place];
+        let (finer, fine) = self.finer(replica, frame)?;
+        let [coarse_overhang, fine_overhang] = [frame.overhang.as_ref()?, fine.overhang.as_ref()?];
+        let simulate = |replica: &Replica, frame: &ReplicaFrame, mut x: Vec<f64>| {
+            let mut solver = Solver::new(replica.cloth(frame));
+            let found = solver.solve(curves, &mut x, &self.task.settings);
+            self.meter.add(&found);
+            // The pose moves both grids alike.
+            let shape = |point: &MeasuredPoint| -> Vec<f64> {
+                frame.compared_axes().iter().map(|&axis| point.coordinate(&x, axis)).collect()
+            };
+            (found.status == Status::Converged)
+                .then(|| frame.points.iter().flat_map(shape).collect::<Vec<_>>())
+        };
+        let edge = state.edge?;
+        let mut x = state.x.clone();
+        coarse_overhang.hold(edge.slope, &mut x);
+        let mut fine_x = fine_overhang.of(coarse_overhang, &x);
+        fine_overhang.hold(edge.slope, &mut fine_x);
+        let coarse = simulate(replica, frame, x)?;
+        let fine = simulate(finer, fine, fine_x)?;
+        let ratio = fine_overhang.grid.cell()[0] / coarse_overhang.grid.cell()[0];
+        let axes = frame.compared_axes().len();
+        let of_point = extrapolated(&coarse, &fine, ratio);
+        Some(match (&frame.merging, self.task.robust) {
+            (Some(merging), None) => {
+                let value = |point: usize, axis: usize| of_point[axes * point + axis / 2];
+                merging.of(value).0.into_flattened()
+            }
+            _ => of_point,
+        })
+    }
+
+    fn extension(&self, place: usize) -> f64 {
+        let (index, frame) = self.frames[place];
+        self.replicas[index].frames[frame].extension
+    }
+
+    /// The frames between clips that are corrected: a few of every sequence, from the smallest extension to the largest.
+    fn samples(&self) -> Vec<usize> {
+        let mut of_replica: Vec<Vec<usize>> = vec![Vec::new(); self.replicas.len()];
+        self.frames.iter().enumerate().for_each(|(place, &(index, _))| of_replica[index].push(place));
+        for places in &mut of_replica {
+            places.sort_by(|&a, &b| self.extension(a).total_cmp(&self.extension(b)));
+        }
+        of_replica.iter().flat_map(|places| spread(places, SAMPLES)).collect()
+    }
+
+    /// Correction of a frame from those of its sequence.
+    fn between(&self, corrected: &[Corrected], place: usize) -> Option<Vec<f64>> {
+        let own = corrected.iter().filter(|other| self.frames[other.place].0 == self.frames[place].0);
+        let known: Vec<(f64, &Vec<f64>)> =
+            own.map(|other| (self.extension(other.place), &other.forces)).collect();
+        between(&known, self.extension(place))
+    }
+
+    /// Correction of the forces in one frame between clips.
+    fn of_clips(&self, curves: &Curves, place: usize) -> Option<Corrected> {
+        let (index, frame) = self.frames[place];
+        let replica = &self.replicas[index];
+        let frame = &replica.frames[frame];
+        let (finer, fine) = self.finer(replica, frame)?;
+        let simulate = |replica: &Replica, frame: &ReplicaFrame, x: &mut [f64]| {
+            let mut solver = Solver::new(replica.cloth(frame));
+            let found = solver.solve(curves, x, &self.task.settings);
+            self.meter.add(&found);
+            let clip_forces = solver.clip_forces();
+            let forces: Vec<f64> = frame.forces.iter().map(|component| component.of(&clip_forces)).collect();
+            (found.status == Status::Converged && !found.escaped).then_some(forces)
+        };
+        let mut x = self.states[place].x.clone();
+        let coarse = simulate(replica, frame, &mut x)?;
+        let started = interpolated(replica, finer, fine, &x);
+        // From the last finer shape, moved as the coarse one has moved since.
+        let mut fine_x = match self.states[place].finer.as_deref() {
+            Some([last, from]) => {
+                last.iter().zip(from).zip(&started).map(|((last, from), now)| last + (now - from)).collect()
+            }
+            None => started.clone(),
+        };
+        let fine = simulate(finer, fine, &mut fine_x)?;
+        let [dx, dy] = replica.specimen.grid.cell();
+        let apart = fine_x.iter().zip(&started).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        if apart > OTHER_SHAPE * dx.min(dy) || fine.len() != coarse.len() {
+            return None;
+        }
+        let [ratio_x, ratio_y] = [0, 1].map(|axis| finer.specimen.grid.cell()[axis] / [dx, dy][axis]);
+        let forces = extrapolated(&coarse, &fine, ratio_x.max(ratio_y));
+        Some(Corrected { place, forces, finer: [fine_x, started] })
+    }
+}
+
+/// (y_h' − y_h)/(1 − (h'/h)²).
+fn extrapolated(coarse: &[f64], fine: &[f64], ratio: f64) -> Vec<f64> {
+    let share = 1.0 / (1.0 - ratio * ratio);
+    coarse.iter().zip(fine).map(|(coarse, fine)| share * (fine - coarse)).collect()
+}
+
+/// A few of a list, evenly, with its ends.
+fn spread(list: &[usize], few: usize) -> Vec<usize> {
+    let last = list.len().saturating_sub(1);
+    if list.len() <= few {
+        return list.to_vec();
+    }
+    (0..few).map(|i| list[(i * last + (few - 1) / 2) / (few - 1)]).collect()
+}
+
+/// Values at an extension, linearly between those at the known ones, which ascend; constant beyond.
+fn between(known: &[(f64, &Vec<f64>)], extension: f64) -> Option<Vec<f64>> {
+    let after = known.partition_point(|(at, _)| *at < extension);
+    let high = known.get(after).or(known.last())?;
+    let low = known[..after].last().unwrap_or(high);
+    let share = if high.0 > low.0 { ((extension - low.0) / (high.0 - low.0)).clamp(0.0, 1.0) } else { 0.0 };
+    (low.1.len() == high.1.len())
+        .then(|| low.1.iter().zip(high.1).map(|(low, high)| low + share * (high - low)).collect())
+}
+
+/// A state on the finer grid, 3 stacked coordinates per node, m: held nodes in place, the others in the coarse triangles.
+fn interpolated(coarse: &Replica, finer: &Replica, fine: &ReplicaFrame, x: &[f64]) -> Vec<f64> {
+    let mesh = &coarse.specimen.mesh;
+    let flat: Vec<Vector2<f64>> = mesh.positions.iter().map(|p| p.xy()).collect();
+    let grid = coarse.specimen.grid;
+    let locator = Locator::new(mesh, &flat, [grid.width, grid.height]);
+    let places: Vec<Vector3<f64>> = x.chunks_exact(3).map(Vector3::from_column_slice).collect();
+    let mut own = fine.start.clone();
+    let cloth = finer.cloth(fine);
+    for (node, rest) in finer.specimen.mesh.positions.iter().enumerate() {
+        let place = locator.find(rest.xy()).interpolate(mesh, &places);
+        for axis in 0..3 {
+            if cloth.unknown(3 * node + axis).is_some() {
+                own[3 * node + axis] = place[axis];
+            }
+        }
+    }
+    own
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_frames_stand_for_all() {
+        assert_eq!(spread(&[3, 1, 4, 1, 5, 9, 2, 6, 7], 5), [3, 4, 5, 2, 7]);
+        assert_eq!(spread(&[3, 1], 5), [3, 1]);
+        assert_eq!(spread(&[], 5), [0; 0]);
+        let [a, b] = [vec![1.0, 0.0], vec![3.0, 4.0]];
+        let known = [(1.0, &a), (2.0, &b)];
+        for (extension, expected) in
+            [(0.5, [1.0, 0.0]), (1.25, [1.5, 1.0]), (2.0, [3.0, 4.0]), (9.0, [3.0, 4.0])]
+        {
+            assert_eq!(between(&known, extension), Some(expected.to_vec()));
+        }
+        assert_eq!(between(&[], 1.0), None);
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct State {
     /// Error of the grid, added to the simulated values: as many as observations, or none. Renewed by
     /// [`Equilibria::correct`] and constant in between, so that the objective stays one function.
     pub(super) correction: Arc<Vec<f64>>,
+    /// The equilibrium on the finer grid, and what of it was interpolated, where it was corrected by one.
+    pub(super) finer: Option<Arc<[Vec<f64>; 2]>>,
 }
 
 /// A frame's share of an evaluation.

@@ -12,6 +12,7 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Relative eigenvalue of the scaled JᵀJ below which the data do not see a direction: its standard deviation would be
 /// a hundred thousand times that of the best direction.
@@ -119,12 +120,12 @@ impl Scatter {
                 < chi_square(freedom, -Z_99) * self.expected * self.noise.powi(2)
     }
 
-    /// Standard deviation of a measurement that is white and blurs parameters as much as noise and misfit do together.
+    /// Variance of a measurement that is white and blurs parameters as much as the misfit does, which neighbours share: n
+    /// measurements tell no more of it than the parameters.
     ///
     /// * `rank` — number of parameters that the measurements tell
-    pub(crate) fn deviation(&self, rank: usize) -> f64 {
-        let excess = self.misfit.powi(2) * self.measurements as f64 / rank.max(1) as f64;
-        (self.noise.powi(2) + excess).sqrt()
+    fn excess(&self, rank: usize) -> f64 {
+        0.25 * self.misfit.powi(2) * self.measurements as f64 / rank.max(1) as f64
     }
 
     /// Standard deviation of a measurement: as declared, or else as if all that is left were white noise.
@@ -183,11 +184,44 @@ fn student_975(freedom: f64) -> f64 {
     z + terms[0] / freedom + terms[1] / freedom.powi(2) + terms[2] / freedom.powi(3)
 }
 
+/// Sources of a curve's uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// Noise of the measurements, and what they do not tell of the curve's course.
+    Noise,
+    /// What no curve meets: hysteresis, or a law that the model cannot follow.
+    Misfit,
+    /// What the correction for the grid may leave.
+    Grid,
+    /// What so few control points may not follow: the distance to the curve with twice as many segments.
+    Curve,
+    /// Errors of curves fitted before.
+    Earlier,
+    /// Curves that were not measured and are assumed.
+    Assumed,
+}
+
+impl std::fmt::Display for Source {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Noise => "noise",
+            Self::Misfit => "misfit",
+            Self::Grid => "grid",
+            Self::Curve => "control points",
+            Self::Earlier => "earlier curves",
+            Self::Assumed => "assumed curves",
+        })
+    }
+}
+
 /// Covariance of the control values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Covariance {
     /// Covariance matrix, over the directions that the data see.
     pub matrix: DMatrix<f64>,
+    /// Its summands by source.
+    parts: BTreeMap<Source, DMatrix<f64>>,
     /// (JᵀJ)⁻¹, over the same directions.
     inverse: DMatrix<f64>,
     /// Number of directions that the data see.
@@ -213,7 +247,6 @@ impl Covariance {
         let largest = gram.eigenvalues.max();
         let seen = |i: usize| gram.eigenvalues[i] > RANK_TOLERANCE * largest;
         let rank = (0..parameters).filter(|&i| seen(i)).count();
-        let variance = scatter.deviation(rank).powi(2);
         let mut inverse = DMatrix::zeros(parameters, parameters);
         let mut unseen = Vec::new();
         for i in 0..parameters {
@@ -232,17 +265,30 @@ impl Covariance {
             0 => None,
             freedom => Some(student_975(freedom as f64)),
         };
-        Self { matrix: &inverse * variance, inverse, rank, unseen, quantile }
+        Self::of_parts(inverse, scatter, rank, unseen, quantile)
+    }
+
+    fn of_parts(
+        inverse: DMatrix<f64>,
+        scatter: &Scatter,
+        rank: usize,
+        unseen: DMatrix<f64>,
+        quantile: Option<f64>,
+    ) -> Self {
+        let noise = &inverse * scatter.noise.powi(2);
+        let misfit = &inverse * scatter.excess(rank);
+        let matrix = &noise + &misfit;
+        let parts = BTreeMap::from([(Source::Noise, noise), (Source::Misfit, misfit)]);
+        Self { matrix, parts, inverse, rank, unseen, quantile }
     }
 
     /// As [`Covariance::new`], but with a prior.
     ///
-    /// * `posterior` — the covariance, if all that is left is white noise
-    pub(crate) fn with_prior(jacobian: &DMatrix<f64>, scatter: &Scatter, posterior: &DMatrix<f64>) -> Self {
-        let without = Self::new(jacobian, scatter);
-        let inverse = posterior / scatter.white().powi(2);
-        let matrix = &inverse * scatter.deviation(without.rank).powi(2);
-        Self { matrix, inverse, unseen: DMatrix::zeros(jacobian.ncols(), 0), ..without }
+    /// * `inverse` — the posterior covariance in units of the noise
+    pub(crate) fn with_prior(jacobian: &DMatrix<f64>, scatter: &Scatter, inverse: &DMatrix<f64>) -> Self {
+        let Self { rank, quantile, .. } = Self::new(jacobian, scatter);
+        let unseen = DMatrix::zeros(jacobian.ncols(), 0);
+        Self::of_parts(inverse.clone(), scatter, rank, unseen, quantile)
     }
 
     /// G = (JᵀJ)⁻¹ Jᵀ J_q: effect of other parameters' errors on these.
@@ -252,12 +298,38 @@ impl Covariance {
 
     /// Adds the errors of other parameters: G Cov(q) Gᵀ.
     pub fn carry(&mut self, gain: &DMatrix<f64>, covariance: &DMatrix<f64>) {
-        self.matrix += gain * covariance * gain.transpose();
+        self.add(Source::Earlier, gain * covariance * gain.transpose());
     }
 
     /// Adds an error along a known direction, within ± 1 times it in 95 of 100 cases.
-    pub fn widen(&mut self, direction: &DVector<f64>) {
-        self.matrix += direction * direction.transpose() / Z_975.powi(2);
+    pub fn widen(&mut self, source: Source, direction: &DVector<f64>) {
+        self.add(source, direction * direction.transpose() / Z_975.powi(2));
+    }
+
+    fn add(&mut self, source: Source, summand: DMatrix<f64>) {
+        self.matrix += &summand;
+        let zero = || DMatrix::zeros(summand.nrows(), summand.ncols());
+        *self.parts.entry(source).or_insert_with(zero) += summand;
+    }
+
+    /// Change of the parameters by errors of the measured values: (JᵀJ)⁻¹ Jᵀ e.
+    pub fn change(&self, jacobian: &DMatrix<f64>, errors: &DVector<f64>) -> DVector<f64> {
+        &self.inverse * (jacobian.transpose() * errors)
+    }
+
+    /// Variance of Σ wᵢkᵢ by noise alone.
+    pub(crate) fn noise(&self, weights: &DVector<f64>) -> f64 {
+        self.parts.get(&Source::Noise).map_or(0.0, |noise| (weights.transpose() * noise * weights)[0])
+    }
+
+    /// Half-widths of the 95 % band of Σ wᵢkᵢ by source; empty where there is no band.
+    pub fn half_bands_by_source(&self, weights: &DVector<f64>) -> BTreeMap<Source, f64> {
+        let (Some(_), Some(quantile)) = (self.half_band(weights), self.quantile) else {
+            return BTreeMap::new();
+        };
+        let half =
+            |matrix: &DMatrix<f64>| quantile * (weights.transpose() * matrix * weights)[0].max(0.0).sqrt();
+        self.parts.iter().map(|(&source, matrix)| (source, half(matrix))).collect()
     }
 
     /// Half-width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave no degrees of freedom.

@@ -1,6 +1,6 @@
 //! The course that every stage takes: replicas, a start, equilibria, a curve that grows, and how sure it is.
 
-use super::growth::{Growth, average, grow, refit, scatter};
+use super::growth::{Average, Growth, average, grow, refit, scatter};
 use super::interventions::Interventions;
 use super::knowledge::Knowledge;
 use super::plan::{Plan, mechanics, unfit};
@@ -11,8 +11,8 @@ use super::summary::{curve_report, sequence_reports};
 use super::watch::Watch;
 use crate::equilibria::{Equilibria, Objective, Task, Unknowns};
 use crate::optimise::gauss_newton::Outcome;
-use crate::optimise::uncertainty::{Covariance, Scatter};
-use crate::twin::replica::{Replica, TableHold};
+use crate::optimise::uncertainty::{Covariance, Scatter, Source};
+use crate::twin::replica::Replica;
 use cloth_data::error::Result;
 use cloth_data::frame::MeasurementSet;
 use cloth_sim::curve::StiffnessCurve;
@@ -47,13 +47,9 @@ pub fn fit(
     let constant = StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?;
     let first = before.clone().unwrap_or(constant);
     let unknowns = Unknowns::one(&plan.fitted, first);
-    // Off a table the grid's error is corrected; springs stand for their own grid.
-    let finer_replicas = match plan.objective {
-        Objective::Positions if settings.table == TableHold::FoundEdge && !settings.model.is_of_springs() => {
-            plan.refined(set, settings, 2)?
-        }
-        _ => Vec::new(),
-    };
+    // Springs stand for their own grid.
+    let corrected = settings.corrected && !settings.model.is_of_springs();
+    let finer_replicas = if corrected { plan.refined(set, settings, 2)? } else { Vec::new() };
     let simulation = simulate(plan, &replicas, known, unknowns, settings, watch)?;
     let mut simulation = simulation.corrected_by(&finer_replicas);
     let dropped = simulation.dropped().len();
@@ -78,7 +74,7 @@ pub fn fit(
     let others = knowledge.without(&plan.fitted);
     let mut judgement = judge(plan, &simulation, &growth, curve, &others, complete);
     if let Some(apart) = before.and_then(|first| ignorance(plan, &assumed, &first, curve)) {
-        judgement.covariance.widen(&apart);
+        judgement.covariance.widen(Source::Assumed, &apart);
     }
     let Judgement { scatter, covariance, gain, observed } = &judgement;
     // Where frames were lost on the way nothing is carried on.
@@ -177,6 +173,11 @@ fn simulate<'r>(
     Ok(simulation)
 }
 
+/// Share of the correction for the grid that may be left. An overhang errs by O(h²), and the next order is a small part;
+/// at the end of a clip strains are singular, the order is below one, and as much as was corrected is left.
+const LEFT_OFF_A_TABLE: f64 = 0.25;
+const LEFT_BETWEEN_CLIPS: f64 = 1.0;
+
 /// Uncertainty of a fitted curve.
 struct Judgement {
     scatter: Scatter,
@@ -199,10 +200,26 @@ fn judge(
     let Outcome { residual, jacobian, .. } = &growth.outcome;
     let scatter = scatter(simulation, residual, jacobian);
     let observed = is_observed(plan, growth, curve, &scatter, others);
-    let mut covariance = match &growth.covariance {
-        Some(matrix) => Covariance::with_prior(jacobian, &scatter, matrix),
+    // What more control points would meet is no misfit: it is in the band as theirs.
+    let mut covariance = match &growth.average {
+        Some(Average { inverse, finer }) => {
+            let finer = finer.as_ref().map(|finer| finer.left).filter(|left| left.misfit < scatter.misfit);
+            let left = finer.unwrap_or(scatter);
+            Covariance::with_prior(jacobian, &left, inverse)
+        }
         None => Covariance::new(jacobian, &scatter),
     };
+    if simulation.is_corrected() && complete {
+        let left = match plan.objective {
+            Objective::Positions => LEFT_OFF_A_TABLE,
+            Objective::Forces => LEFT_BETWEEN_CLIPS,
+        };
+        let correction = simulation.correction();
+        if correction.len() == jacobian.nrows() {
+            let change = covariance.change(jacobian, &correction);
+            covariance.widen(Source::Grid, &(left * change));
+        }
+    }
     let groups = others.groups(&plan.components);
     let mut gain = DMatrix::zeros(curve.len(), 0);
     if complete && !groups.is_empty() {

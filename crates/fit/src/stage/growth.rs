@@ -36,12 +36,30 @@ pub struct Growth {
     pub outcome: Outcome,
     /// Constraints on the curve.
     pub domain: LinearConstraints,
-    /// Covariance of the control values over all descriptions of the curve; `None` for one with these control points.
-    pub covariance: Option<DMatrix<f64>>,
+    /// The mean over all descriptions of the curve that this is; `None` for a curve with one number of control points.
+    pub average: Option<Average>,
     /// Every level, including those that did not pay and were not kept.
     pub levels: Vec<Level>,
     /// Reason for the end of the growth.
     pub stopped: String,
+}
+
+/// A mean over descriptions of a curve.
+pub struct Average {
+    /// Covariance of the control values in units of the noise.
+    pub inverse: DMatrix<f64>,
+    /// The same mean with twice as many segments.
+    pub finer: Option<Finer>,
+}
+
+/// A mean over descriptions of a curve with twice as many segments.
+pub struct Finer {
+    /// The curve.
+    pub curve: StiffnessCurve,
+    /// Covariance of its control values.
+    pub covariance: DMatrix<f64>,
+    /// Noise and misfit that it leaves.
+    pub left: Scatter,
 }
 
 /// If doubling a constant stiffness changes less than this share of the residual, more points would be undetermined,
@@ -76,18 +94,22 @@ pub fn grow(
     let mut levels = Vec::new();
     let mut kept: Option<(Unknowns, Outcome, LinearConstraints)> = None;
     let rule = settings.growth;
+    // Forces are hardly wrong for the grid: their correction waits for the level that is kept.
+    let positions = simulation.task().objective == Objective::Positions;
+    let corrections = if positions { MOST_CORRECTIONS } else { 1 };
     let mut unknowns = simulation.unknowns().clone();
     let mut tries = 0;
     loop {
         let points = points_of(&unknowns);
+        let on_the_way = usize::from(positions);
         let (outcome, domain, level) =
-            fit_level(simulation, &unknowns, None, 1, settings, lowest_tangents, watch)?;
+            fit_level(simulation, &unknowns, None, on_the_way, settings, lowest_tangents, watch)?;
         levels.push(level);
         unknowns = unknowns.with_values(&outcome.point)?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
         if points == 1 && !felt {
             let stopped = "a constant stiffness hardly changes the simulated values".to_string();
-            return Ok(Growth { unknowns, outcome, domain, covariance: None, levels, stopped });
+            return Ok(Growth { unknowns, outcome, domain, average: None, levels, stopped });
         }
         let all = points >= most;
         let noise = variance_left(&outcome.residual, unknowns.len(), simulation.noise_is_known());
@@ -128,22 +150,15 @@ pub fn grow(
             };
             let (mut unknowns, mut outcome, domain) = best;
             if simulation.is_corrected() {
-                let (settled, _, level) = fit_level(
-                    simulation,
-                    &unknowns,
-                    None,
-                    MOST_CORRECTIONS,
-                    settings,
-                    lowest_tangents,
-                    watch,
-                )?;
+                let (settled, _, level) =
+                    fit_level(simulation, &unknowns, None, corrections, settings, lowest_tangents, watch)?;
                 if !settled.residual.is_empty() {
                     unknowns = unknowns.with_values(&settled.point)?;
                     outcome = settled;
                     levels.iter_mut().filter(|l| l.points == level.points).for_each(|l| l.go_on(&level));
                 }
             }
-            return Ok(Growth { unknowns, outcome, domain, covariance: None, levels, stopped });
+            return Ok(Growth { unknowns, outcome, domain, average: None, levels, stopped });
         }
         kept = Some(best);
         unknowns = resampled(simulation, &unknowns, next_points(points, most))?;
@@ -157,6 +172,9 @@ const COURSE: usize = 3;
 /// moves after so many steps the weights stay, and a fit led by them finds it: at kinks of a spline steps go to and fro.
 const MEAN_FOUND: f64 = 0.05;
 const MOST_MEANS: usize = 6;
+
+/// On the way to the mean the grid is corrected again where the curve moves by more than this share.
+const CORRECTED_AGAIN: f64 = 0.05;
 
 /// Increase of ‖r/σ‖² that makes a step to the mean too long.
 const WORSE: f64 = 9.0;
@@ -237,11 +255,14 @@ pub(crate) fn average(
         if settled {
             break;
         }
+        let moved = (&next - &point).amax() / point.amax();
         point = next;
         simulation.set_unknowns(unknowns.with_values(&point)?);
-        simulation.correct();
+        if moved > CORRECTED_AGAIN {
+            simulation.correct();
+        }
     }
-    let Some((mut outcome, covariance, prior, _)) = found else { return Ok(growth) };
+    let Some((mut outcome, covariance, prior, noise)) = found else { return Ok(growth) };
     unknowns = unknowns.with_values(&outcome.point)?;
     let rms = simulation.unit() * (outcome.sum_of_squares / outcome.residual.len() as f64).sqrt();
     let status = outcome.status.to_string();
@@ -259,7 +280,29 @@ pub(crate) fn average(
         Some(earlier) => earlier.go_on(&level),
         None => levels.push(level),
     }
-    Ok(Growth { unknowns, outcome, domain, covariance: Some(covariance), levels, stopped: growth.stopped })
+    let finer = finer(simulation, &unknowns)?;
+    let average = Some(Average { inverse: covariance / (noise * noise), finer });
+    Ok(Growth { unknowns, outcome, domain, average, levels, stopped: growth.stopped })
+}
+
+/// The mean with twice as many segments, by one linearised step; `None` without equilibria.
+fn finer(simulation: &mut Equilibria<'_>, unknowns: &Unknowns) -> Result<Option<Finer>> {
+    let finer = resampled(simulation, unknowns, 2 * points_of(unknowns) - 1)?;
+    let point = finer.values();
+    simulation.set_unknowns(finer.clone());
+    let Ok(Evaluation::Values { residual, jacobian: Some(jacobian) }) = simulation.evaluate(&point, true)
+    else {
+        return Ok(None);
+    };
+    let noise = scatter(simulation, &residual, &jacobian).white();
+    let posterior = Posterior::new(&(&residual / noise), &(&jacobian / noise), &point);
+    let Some(posterior) = posterior else { return Ok(None) };
+    let left = residual - &jacobian * (&posterior.mean - &point);
+    // A point outside what a curve may be is no better description.
+    let Ok(found) = finer.with_values(&posterior.mean) else { return Ok(None) };
+    let Some(Unknown { curve, .. }) = found.iter().next().cloned() else { return Ok(None) };
+    let left = scatter(simulation, &left, &jacobian);
+    Ok(Some(Finer { curve, covariance: posterior.covariance, left }))
 }
 
 /// Noise and misfit of an evaluation.
@@ -302,7 +345,7 @@ pub fn refit(
     let unknowns = start.with_values(&outcome.point)?;
     let levels = if averaged { Vec::new() } else { vec![level] };
     let stopped = format!("all {points} control points of the previous pass are fitted again");
-    Ok(Growth { unknowns, outcome, domain, covariance: None, levels, stopped })
+    Ok(Growth { unknowns, outcome, domain, average: None, levels, stopped })
 }
 
 /// Fits one level: a fixed number of control points.

@@ -5,7 +5,7 @@ use super::level::Level;
 use super::settings::Variant;
 use super::shapes::Shapes;
 use crate::equilibria::{Counters, DroppedFrame, Objective};
-use crate::optimise::uncertainty::Scatter;
+use crate::optimise::uncertainty::{Scatter, Source};
 use cloth_data::frame::{Kind, Phase};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Model};
@@ -35,6 +35,9 @@ pub struct CurveReport {
     /// 201 rows from rest, or from the smallest strain if that is negative, to the largest visited strain; no band
     /// below the visited strains. Bending: over curvature.
     pub samples: Vec<CurveRow>,
+    /// Half-widths of the band by source, where it is widest, N/m; bending: N. Their squares add up to that of the band,
+    /// but for its cut at zero stress.
+    pub band: BTreeMap<Source, f64>,
     /// Distribution of strains over the same range. Bending: over curvature.
     pub histogram: Histogram,
     /// Number of directions of the control values that the data determine.

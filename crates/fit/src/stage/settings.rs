@@ -113,6 +113,9 @@ pub struct Settings {
     pub first_stiffness: FirstStiffness,
     /// Constraint at a table; default the overhang with an edge that is found. Published: the part on the table.
     pub table: TableHold,
+    /// Correction for the grid's error, so that curves are those of the continuum; default true. Published: false, curves
+    /// for one grid. Never of springs, which stand for their own grid.
+    pub corrected: bool,
     /// Criterion for more control points; default a decrease of the root mean square residual by 1 %. Published: its
     /// square.
     pub growth: GrowthRule,
@@ -143,6 +146,7 @@ impl Default for Settings {
             solve_start: SolveStart::LastEquilibrium,
             first_stiffness: FirstStiffness::FromMeasurements,
             table: TableHold::default(),
+            corrected: true,
             growth: GrowthRule::default(),
             averaged: true,
             robust: None,
@@ -181,6 +185,7 @@ impl Settings {
             solve_start: SolveStart::Measured,
             first_stiffness: FirstStiffness::Constant,
             table: TableHold::AsSeen,
+            corrected: false,
             growth: GrowthRule::PUBLISHED,
             averaged: false,
             robust: None,

@@ -1,10 +1,10 @@
 //! Builds the report of a stage.
 
-use super::growth::Growth;
+use super::growth::{Finer, Growth};
 use super::report::{CurveReport, CurveRow, ForceRow, Histogram, Hysteresis, SequenceReport};
 use super::shapes::Shapes;
 use crate::equilibria::{Equilibria, Settled, Unknown};
-use crate::optimise::uncertainty::Covariance;
+use crate::optimise::uncertainty::{Covariance, Source};
 use cloth_data::frame::Phase;
 use cloth_sim::bending::Rolled;
 use cloth_sim::curve::StiffnessCurve;
@@ -19,7 +19,7 @@ pub(crate) fn curve_report(
     covariance: &Covariance,
     observed: bool,
 ) -> CurveReport {
-    let Growth { outcome, domain, .. } = growth;
+    let Growth { outcome, domain, average, .. } = growth;
     let visited @ [low, high] = simulation.visited(&unknown);
     // A curve starts at rest, even if the observed part starts later.
     let range = [low.min(0.0), high];
@@ -28,12 +28,15 @@ pub(crate) fn curve_report(
     let strains = simulation.strains(&unknown);
     let curve = unknown.curve;
     let last = curve.strains()[curve.len() - 1];
-    let rows = Rows { curve: &curve, covariance, rolled };
+    let finer = average.and_then(|average| average.finer);
+    let rows = Rows { curve: &curve, covariance, finer: finer.as_ref(), rolled };
     let seen = visited.map(|strain| rows.place(strain));
     let mut samples = rows.over(range);
     samples.iter_mut().filter(|sample| sample.strain < seen[0]).for_each(|sample| sample.band = None);
+    let band = rows.parts(&samples);
     CurveReport {
         observed,
+        band,
         points: curve.strains().iter().map(|&strain| rows.at(rows.place(strain))).collect(),
         samples,
         histogram: rows.histogram(range, &strains),
@@ -66,7 +69,16 @@ const BINS: usize = 40;
 struct Rows<'a> {
     curve: &'a StiffnessCurve,
     covariance: &'a Covariance,
+    /// The curve with twice as many segments.
+    finer: Option<&'a Finer>,
     rolled: Option<Rolled>,
+}
+
+/// Derivatives of the stress by the control values.
+fn weights(curve: &StiffnessCurve, strain: f64) -> DVector<f64> {
+    let mut weights = vec![0.0; curve.len()];
+    curve.weights(strain, &mut weights);
+    DVector::from_vec(weights)
 }
 
 impl Rows<'_> {
@@ -98,14 +110,50 @@ impl Rows<'_> {
         self.rolled.map_or(strain, |rolled| rolled.curvature(strain))
     }
 
+    fn weights(&self, strain: f64) -> DVector<f64> {
+        weights(self.curve, strain)
+    }
+
+    /// Distance to the finer curve beyond what noise makes, at most half a segment away: what the control points may not
+    /// follow. (The difference of two curves, one within the other, varies by the difference of their variances.)
+    fn beyond(&self, strain: f64) -> f64 {
+        let Some(Finer { curve, covariance, .. }) = self.finer else { return 0.0 };
+        let last = self.curve.strains()[self.curve.len() - 1];
+        let segment = last / (self.curve.len() - 1) as f64;
+        let at = |place: f64| {
+            let fine = weights(curve, place);
+            let own = self.covariance.noise(&self.weights(place));
+            let chance = ((fine.transpose() * covariance * &fine)[0] - own).max(0.0);
+            ((curve.stress(place) - self.curve.stress(place)).powi(2) - chance).max(0.0).sqrt()
+        };
+        let around = (-4..=4).map(|i| (strain.abs() + 0.125 * f64::from(i) * segment).clamp(0.0, last));
+        around.map(at).fold(0.0, f64::max)
+    }
+
+    /// The band by source where it is widest.
+    fn parts(&self, samples: &[CurveRow]) -> BTreeMap<Source, f64> {
+        let half = |row: &CurveRow| row.band.map_or(0.0, |[low, high]| high - low);
+        let Some(widest) = samples.iter().max_by(|a, b| half(a).total_cmp(&half(b))) else {
+            return BTreeMap::new();
+        };
+        let strain = self.rolled.map_or(widest.strain, |rolled| rolled.strain(widest.strain));
+        let lever = self.rolled.map_or(1.0, |rolled| rolled.lever(widest.strain));
+        let mut parts = self.covariance.half_bands_by_source(&self.weights(strain));
+        if self.finer.is_some() && !parts.is_empty() {
+            parts.insert(Source::Curve, self.beyond(strain));
+        }
+        parts.values_mut().for_each(|half| *half *= lever);
+        parts.retain(|_, half| *half > 0.0);
+        parts
+    }
+
     fn at(&self, place: f64) -> CurveRow {
         let (curve, rolled) = (self.curve, self.rolled);
         let strain = rolled.map_or(place, |rolled| rolled.strain(place));
         let lever = rolled.map_or(1.0, |rolled| rolled.lever(place));
         let stress = lever * curve.stress(strain);
-        let mut weights = vec![0.0; curve.len()];
-        curve.weights(strain, &mut weights);
-        let half = self.covariance.half_band(&DVector::from_vec(weights));
+        let half =
+            self.covariance.half_band(&self.weights(strain)).map(|half| half.hypot(self.beyond(strain)));
         // Stress has the sign of strain: the part of the band beyond zero is impossible.
         let band = half.map(|half| {
             let [low, high] = [stress - lever * half, stress + lever * half];

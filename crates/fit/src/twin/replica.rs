@@ -17,7 +17,7 @@ mod profile;
 mod skip;
 
 use crate::twin::in_place;
-use crate::twin::specimen::{Specimen, near_square};
+use crate::twin::specimen::{Cells, Specimen, near_square};
 use as_seen::AsSeen;
 use blend::Blend;
 use clips::Grip;
@@ -138,7 +138,17 @@ impl Replica {
             true => Diagonals::Crossed,
             false => parts.diagonals,
         };
-        let specimen = Specimen::new(sequence, parts.nodes, diagonals)?;
+        let specimen = Specimen::new(
+            sequence,
+            &Cells {
+                nodes: parts.nodes,
+                diagonals,
+                // Off a table the overhang is refined.
+                refinement: if sequence.clips.is_empty() { 1 } else { parts.refinement },
+                // What springs resist depends on their length.
+                to_clips: !parts.model.is_of_springs(),
+            },
+        )?;
         check_cells(sequence, &specimen, parts.model)?;
         let gravity = specimen.turn(&sequence.gravity);
         // Drops components of gravity that are rounding of the rotation.

@@ -8,6 +8,7 @@
 //!      ‾‾‾‾‾‾                                                 └────────x
 //! ```
 
+use super::lines::Lines;
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{MeshPoint, Sequence};
 use cloth_data::locator::Locator;
@@ -29,27 +30,49 @@ pub struct Specimen {
     pub grid: Grid,
     /// Position of each grid node in the measured mesh.
     pub samples: Vec<MeshPoint>,
+    /// The grid's lines across x and across y.
+    pub lines: [Lines; 2],
     /// Cloth inside each clip, cut off from the grid, m².
     pub gripped: Vec<f64>,
+}
+
+/// The grid of a specimen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cells {
+    /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
+    pub nodes: Option<[usize; 2]>,
+    /// Split of the cells.
+    pub diagonals: Diagonals,
+    /// Every cell is cut into so many along each side.
+    pub refinement: usize,
+    /// Lines run where clips end; else all cells are equal.
+    pub to_clips: bool,
 }
 
 impl Specimen {
     /// Lays a grid over a sequence's rest mesh, without the cloth inside bars that grip a whole side: it moves
     /// rigidly, and the grid's border lies on the bar's edge, wherever that is.
     ///
-    /// * `nodes` — columns and rows; `None` = as many cells as 25×25 nodes have, near square
-    ///
     /// # Errors
     /// A rest mesh that is not a flat rectangle; too few nodes.
-    pub fn new(sequence: &Sequence, nodes: Option<[usize; 2]>, diagonals: Diagonals) -> Result<Self> {
+    pub fn new(sequence: &Sequence, cells: &Cells) -> Result<Self> {
+        let Cells { nodes, diagonals, refinement, to_clips } = *cells;
         let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
         let rectangle = Rectangle::of(sequence)?;
         let (free, gripped) = free_region(sequence, &rectangle);
         let [corner, opposite] = free;
         let [width, height] = [opposite.x - corner.x, opposite.y - corner.y];
         let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height, diagonals));
-        let grid = Grid { columns, rows, width, height, diagonals };
+        let counts = [columns, rows].map(|nodes| refinement * nodes.saturating_sub(1) + 1);
+        let grid = Grid { columns: counts[0], rows: counts[1], width, height, diagonals };
         let mut mesh = grid.mesh().map_err(mechanics)?;
+        let ends = if to_clips { clip_ends(sequence, &rectangle, corner) } else { [Vec::new(), Vec::new()] };
+        let lines = [(width, columns, &ends[0]), (height, rows, &ends[1])]
+            .map(|(length, nodes, ends)| Lines::new(length, nodes - 1, ends).refined(refinement));
+        let [dx, dy] = grid.cell();
+        for position in &mut mesh.positions {
+            *position = Vector3::new(lines[0].at(position.x / dx), lines[1].at(position.y / dy), 0.0);
+        }
         let locator = Locator::new(&sequence.mesh, &rectangle.flat, rectangle.size);
         let samples: Vec<MeshPoint> = mesh.positions.iter().map(|p| locator.find(p.xy() + corner)).collect();
         for (material, sample) in mesh.material.iter_mut().zip(&samples) {
@@ -58,7 +81,7 @@ impl Specimen {
         let checked = Mesh::new(mesh.positions, mesh.material, mesh.triangles).map_err(mechanics)?;
         let mut frame = rectangle.frame;
         frame.translation.vector -= Vector3::new(corner.x, corner.y, 0.0);
-        Ok(Self { frame, mesh: Mesh { grid: Some(grid), ..checked }, grid, samples, gripped })
+        Ok(Self { frame, mesh: Mesh { grid: Some(grid), ..checked }, grid, samples, lines, gripped })
     }
 
     /// The grid's nodes at rest, in world coordinates, m.
@@ -67,7 +90,7 @@ impl Specimen {
         inverse.rotation * self.mesh.positions[node] + inverse.translation.vector
     }
 
-    /// Material coordinates of a point of the rest rectangle, m: bilinear in the grid's cells, and beyond its border.
+    /// Material coordinates of a point of the rest rectangle, m: bilinear in equal cells, and beyond its border.
     pub fn material(&self, at: Vector2<f64>) -> Vector2<f64> {
         let [dx, dy] = self.grid.cell();
         let place = |at: f64, cell: f64, nodes: usize| {
@@ -122,6 +145,13 @@ fn free_region(sequence: &Sequence, rectangle: &Rectangle) -> ([Vector2<f64>; 2]
     ([low, high], gripped)
 }
 
+/// Where clips end, along x and y from a corner, m.
+fn clip_ends(sequence: &Sequence, rectangle: &Rectangle, corner: Vector2<f64>) -> [Vec<f64>; 2] {
+    let boxes = sequence.clips.iter().map(|clip| bounds(clip.vertices.iter().map(|&v| rectangle.flat[v])));
+    let ends: Vec<Vector2<f64>> = boxes.flatten().map(|end| end - corner).collect();
+    [0, 1].map(|axis| ends.iter().map(|end| end[axis]).collect())
+}
+
 /// Columns and rows for nearly square cells, with about as many nodes as 25×25; crossed cells have one more node
 /// each.
 pub(crate) fn near_square(width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
@@ -153,6 +183,10 @@ mod tests {
         }
     }
 
+    fn cells(nodes: Option<[usize; 2]>) -> Cells {
+        Cells { nodes, diagonals: Diagonals::Forward, refinement: 1, to_clips: true }
+    }
+
     fn rectangle(width: f64, height: f64) -> Mesh {
         Grid { columns: 14, rows: 9, width, height, diagonals: Diagonals::Alternating }.mesh().unwrap()
     }
@@ -162,7 +196,7 @@ mod tests {
         let mut mesh = rectangle(0.08, 0.04);
         let motion = Isometry3::new(Vector3::new(0.3, -0.2, 0.9), Vector3::new(0.4, 1.2, -0.7));
         mesh.positions.iter_mut().for_each(|p| *p = motion.rotation * *p + motion.translation.vector);
-        let specimen = Specimen::new(&sequence(mesh), None, Diagonals::Forward).unwrap();
+        let specimen = Specimen::new(&sequence(mesh), &cells(None)).unwrap();
         let [dx, dy] = specimen.grid.cell();
         assert!((dx / dy - 1.0).abs() < 0.05, "{dx} {dy}");
         assert!((specimen.grid.width - 0.08).abs() < 1e-12 && (specimen.grid.height - 0.04).abs() < 1e-12);
@@ -180,7 +214,7 @@ mod tests {
         let mut mesh = rectangle(0.03, 0.1);
         let turn = nalgebra::Rotation2::new(std::f64::consts::FRAC_PI_4);
         mesh.material.iter_mut().for_each(|m| *m = turn * *m);
-        let specimen = Specimen::new(&sequence(mesh), Some([5, 13]), Diagonals::Forward).unwrap();
+        let specimen = Specimen::new(&sequence(mesh), &cells(Some([5, 13]))).unwrap();
         assert_eq!(specimen.grid.columns * specimen.grid.rows, 65);
         let along = specimen.mesh.material[1] - specimen.mesh.material[0];
         assert!((along.x.abs() - along.y.abs()).abs() < 1e-9 * along.norm());
@@ -191,6 +225,6 @@ mod tests {
         let mut mesh = rectangle(0.1, 0.1);
         let shear = |p: f64, q: f64| p + 0.3 * q;
         mesh.positions.iter_mut().for_each(|p| p.x = shear(p.x, p.y));
-        assert!(Specimen::new(&sequence(mesh), None, Diagonals::Forward).is_err());
+        assert!(Specimen::new(&sequence(mesh), &cells(None)).is_err());
     }
 }

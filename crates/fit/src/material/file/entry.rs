@@ -4,6 +4,7 @@ use super::control_point::{ControlPoint, Unit};
 use crate::equilibria::DroppedFrame;
 use crate::equilibria::Objective;
 use crate::judge::verdict::{self, Verdict};
+use crate::optimise::uncertainty::Source;
 use crate::stage::interventions::Interventions;
 use crate::stage::report::{Basis, CurveReport, SequenceReport, StageReport};
 use cloth_data::frame::Kind;
@@ -12,6 +13,7 @@ use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::error::Error;
 use cloth_sim::material::{Component, Model};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A component's curve.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -61,6 +63,9 @@ pub struct CurveEntry {
     /// Model misfit beyond that noise, m; 0 if none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misfit_m: Option<f64>,
+    /// Half-widths of the band by source where it is widest, N/m; bending: N.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub band: BTreeMap<Source, f64>,
     /// Curves that the fit took as known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub basis: Option<Basis>,
@@ -112,6 +117,7 @@ impl CurveEntry {
             misfit_n: forces.map(|scatter| scatter.misfit),
             noise_m: positions.map(|scatter| scatter.noise),
             misfit_m: positions.map(|scatter| scatter.misfit),
+            band: report.band.clone(),
             basis: Some(stage.basis.clone()),
             pass: Some(stage.pass),
             frames: Some(stage.sequences.iter().map(|sequence| sequence.frames).sum()),

@@ -9,9 +9,6 @@ use cloth_data::measure::effective_shear;
 use cloth_data::rectangle::bounds;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Lines closer than this, in cells, coincide up to rounding.
-const TIE: f64 = 1e-6;
-
 /// The nodes held by clips, in groups: one per clip, and one for every pair of clips that share nodes, as two bars of
 /// a picture frame share a corner.
 #[derive(Debug, Clone)]
@@ -37,16 +34,18 @@ impl Grip {
             group_of: vec![None; specimen.mesh.len()],
             groups: (0..clips).map(|clip| [clip, clip]).collect(),
         };
-        let cell = Vector2::from(specimen.grid.cell());
         for (clip, gripped) in sequence.clips.iter().enumerate() {
             let places = gripped.vertices.iter().map(|&v| specimen.place(&sequence.mesh.positions[v]).xy());
-            let [low, high] = bounds(places);
+            let ends = bounds(places);
             // If two lines are equally near, both are held.
-            let low = low.component_div(&cell).map(|line| (line - 0.5 - TIE).ceil() - TIE);
-            let high = high.component_div(&cell).map(|line| (line + 0.5 + TIE).floor() + TIE);
+            let [low, high] = [0, 1].map(|end| {
+                let line = |axis: usize| specimen.lines[axis].nearest(ends[end][axis])[end];
+                Vector2::new(line(0), line(1))
+            });
+            let tie = Vector2::new(specimen.lines[0].tie(), specimen.lines[1].tie());
             for node in 0..specimen.mesh.len() {
-                let line = specimen.mesh.positions[node].xy().component_div(&cell);
-                if line >= low && line <= high {
+                let place = specimen.mesh.positions[node].xy();
+                if place >= low - tie && place <= high + tie {
                     grip.claim(node, clip, sequence, specimen)?;
                 }
             }

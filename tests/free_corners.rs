@@ -1,0 +1,95 @@
+//! Picture frames whose clips end before the corners, which are free.
+//!
+//! ```text
+//!      ▀▀▀▀▀▀▀      four clips, each from 2, 3.3 or 5 % of its side to as far from its other end
+//!    ▌ cloth  ▐     truth: 97×97 nodes, another grid than the fit's, with a shear law that is no spline
+//!      ▄▄▄▄▄▄▄
+//! ```
+//!
+//! The default grid of 25×25 nodes has lines where the clips end and is corrected for its error: the stress errs by at
+//! most 0.4 % (relative L2 over the visited range), without noise.
+
+use cloth_data::frame::MeasurementSet;
+use cloth_fit::incremental::{Stage, fit};
+use cloth_fit::stage::knowledge::Knowledge;
+use cloth_fit::stage::{Settings, Watch};
+use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};
+use cloth_sim::material::{Component, Curves};
+use fit_cloth_tests::picture_frame::{PictureFrame, SIDE};
+use fit_cloth_tests::{coverage, own_mesh, stress_error};
+
+const NODES: usize = 97;
+
+fn law(strain: f64) -> f64 {
+    6.0 * (strain / 0.2).tanh() + 40.0 * strain + 60.0 * strain.powi(3)
+}
+
+/// The law as a curve of 65 points, and constant stretch.
+fn truth() -> Curves {
+    let strains = equidistant(65, 0.64);
+    let stiffness = |e: &f64| if *e > 0.0 { law(*e) / e } else { 6.0 / 0.2 + 40.0 };
+    let stiffnesses = strains.iter().map(stiffness).collect();
+    let stretch = StiffnessCurve::constant(2000.0, NegativeStrain::Green).unwrap();
+    let shear = StiffnessCurve::new(strains, stiffnesses, NegativeStrain::Odd).unwrap();
+    let mut curves = Curves::default();
+    curves.set(Component::StretchWeft, stretch.clone());
+    curves.set(Component::StretchWarp, stretch);
+    curves.set(Component::Shear, shear);
+    curves
+}
+
+/// Frames of a picture frame whose clips end at a share of the side.
+fn measured(share: f64, frames: usize) -> MeasurementSet {
+    let angles: Vec<f64> = (1..=frames).map(|i| 0.45f64.asin() * i as f64 / frames as f64).collect();
+    let frame = PictureFrame { measured: [NODES; 2], shapes: true, ..PictureFrame::of_law(&law, &angles) };
+    let mut set = frame.measure();
+    for sequence in &mut set.sequences {
+        let mesh = &sequence.mesh;
+        let inside = |at: f64| at >= share * SIDE - 1e-9 && at <= (1.0 - share) * SIDE + 1e-9;
+        for (bar, clip) in sequence.clips.iter_mut().enumerate() {
+            // Bars along x, then along y.
+            clip.vertices.retain(|&vertex| inside(mesh.positions[vertex][bar / 2]));
+        }
+    }
+    let settings = Settings { nodes: Some([NODES; 2]), ..Settings::default() };
+    let mut set = own_mesh::simulated(&set, &truth(), &settings);
+    // Constant heights count as not measured, and a sheet that nobody saw may have buckled.
+    let frames = set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames);
+    frames.flat_map(|frame| &mut frame.positions).for_each(|places| places[0].z += 1e-6);
+    set
+}
+
+/// Relative error of the stress, and share of its rows within the band.
+fn fitted(set: &MeasurementSet, settings: &Settings) -> [f64; 2] {
+    let known = Knowledge::exact(truth());
+    let known = known.without(&[Component::Shear]);
+    let report = fit(set, &[Stage::Shear], &known, settings, &mut Watch::default()).unwrap();
+    let stage = report.stage(Component::Shear).unwrap();
+    assert!(stage.converged, "{:?}", stage.levels.iter().map(|l| (l.points, &l.status)).collect::<Vec<_>>());
+    [stress_error(&stage.curve.samples, &law), coverage(&stage.curve.samples, &law)]
+}
+
+/// Error allowed with five points and with nine. As the grid gets finer the force on clips that end at 5 % falls like
+/// h^0.75, by 0.15 % still from 97 to 145 nodes: a correction of 25 nodes cannot meet 97 exactly.
+#[test]
+fn free_corners_are_fitted_within_their_bands() {
+    for (share, allowed) in [(0.02, [0.004, 0.0015]), (0.033, [0.004, 0.0025]), (0.05, [0.004, 0.004])] {
+        let set = measured(share, 24);
+        for (points, allowed) in [5, 9].into_iter().zip(allowed) {
+            let [error, inside] = fitted(&set, &Settings { points, ..Settings::default() });
+            println!(
+                "clips from {:.1} %, {points} points: {:.3} %, inside {inside:.2}",
+                100.0 * share,
+                100.0 * error
+            );
+            assert!(error < allowed && inside > 0.6, "{share} {points}: {error} {inside}");
+        }
+    }
+}
+
+#[test]
+fn without_a_correction_the_grid_is_seen_and_no_part_of_the_band() {
+    let set = measured(0.05, 12);
+    let [error, inside] = fitted(&set, &Settings { corrected: false, ..Settings::default() });
+    assert!(error > 0.006 && inside < 0.2, "{error} {inside}");
+}
