@@ -78,11 +78,12 @@ fn laws(nonlinear: bool) -> Vec<Law> {
 }
 
 struct Found {
+    /// Γ of the longest overhang.
+    gamma: f64,
     error: f64,
     inside: f64,
     half_width: f64,
     deviation: f64,
-    points: usize,
 }
 
 fn found(law: &Law, spacing: f64, noise: Option<(f64, u64)>, settings: &Settings) -> Option<Found> {
@@ -116,42 +117,14 @@ fn found(law: &Law, spacing: f64, noise: Option<(f64, u64)>, settings: &Settings
     };
     let inside = samples.iter().filter(holds).count() as f64 / samples.len() as f64;
     let middle = samples[samples.len() / 2];
-    let Some([low, high]) = middle.band else {
-        println!(
-            "no band: {} {:?} levels {:?} {:?} {:?}",
-            stage.growth,
-            stage.curve,
-            stage.levels.iter().map(|l| (l.points, l.rms, l.status.clone())).collect::<Vec<_>>(),
-            stage.scatter,
-            stage.sequences
-        );
-        return None;
-    };
+    let [low, high] = middle.band?;
     let half = 0.5 * (high - low) / middle.stress;
-    if std::env::var("TELL").is_ok() {
-        let gamma = law.density * GRAVITY * overhangs[7].powi(3) / law.linear;
-        let levels: Vec<_> = stage.levels.iter().map(|l| (l.points, 1e3 * l.rms)).collect();
-        println!(
-            "  Γ {gamma:.1} L {:.0} mm κ {last:.0} of {:.0} B2κ/B1 {:.3}: error {:.3} % inside {inside:.2} half {:.3} % points {} mid {:+.3} % levels {levels:.5?} scatter {:.2e} {:.2e} n {} {:?}",
-            1e3 * overhangs[7],
-            law.limit(),
-            law.quadratic * last / law.linear,
-            100.0 * rms,
-            100.0 * half,
-            stage.curve.curve.len(),
-            100.0 * error(middle),
-            stage.scatter.noise,
-            stage.scatter.misfit,
-            stage.scatter.measurements,
-            stage.growth
-        );
-    }
     Some(Found {
+        gamma: law.density * GRAVITY * overhangs[7].powi(3) / law.linear,
         error: rms,
         inside,
         half_width: half,
         deviation: error(middle) / (half / 1.96),
-        points: stage.curve.curve.len(),
     })
 }
 
@@ -176,22 +149,23 @@ fn pooled(step: usize, nodes: Option<[usize; 2]>) {
                 let all: Vec<Found> = all.into_iter().flatten().collect();
                 let of = |value: fn(&Found) -> f64, share| quantile(all.iter().map(value).collect(), share);
                 let inside = all.iter().map(|f| f.inside).sum::<f64>() / all.len() as f64;
-                let worst = all.iter().map(|f| f.error).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
                 println!(
-                    "{} {} mm noise {:?}: {} fits, {failed} failed; error median {:.3} % p90 {:.3} worst {:.3} (#{:?}); inside {:.3}, half-width median {:.3} %, spread {:.2}, points {:?}",
+                    "{} {} mm noise {noise:?}: {} fits, {failed} failed; error median {:.3} % p90 {:.3} worst {:.3}; \
+                     inside {inside:.3}, half-width median {:.3} %, spread {:.2}",
                     if nonlinear { "nonlinear" } else { "linear" },
                     1e3 * spacing,
-                    noise,
                     all.len(),
                     100.0 * of(|f| f.error, 0.5),
                     100.0 * of(|f| f.error, 0.9),
                     100.0 * of(|f| f.error, 1.0),
-                    worst.map(|w| w.0),
-                    inside,
                     100.0 * of(|f| f.half_width, 0.5),
                     1.4826 * of(|f| f.deviation.abs(), 0.5),
-                    [1, 2, 3, 5].map(|n| all.iter().filter(|f| f.points == n).count()),
                 );
+                assert!(failed == 0 && inside >= 0.88);
+                let long = all.iter().filter(|f| f.gamma >= 10.0).map(|f| f.error);
+                let long: Vec<f64> = long.collect();
+                let [median, most] = if nonlinear { [0.006, 0.025] } else { [0.0015, 0.01] };
+                assert!(quantile(long.clone(), 0.5) <= median && quantile(long, 0.9) <= most);
             }
         }
     }

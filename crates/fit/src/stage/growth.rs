@@ -171,9 +171,9 @@ const COURSE: usize = 3;
 /// The mean over all descriptions is found where it moves by less than this share of its standard deviation. Where it still
 /// moves after so many steps the weights stay, and a fit led by them finds it: at kinks of a spline steps go to and fro.
 const MEAN_FOUND: f64 = 0.05;
-const MOST_MEANS: usize = 6;
+const MOST_MEANS: usize = 8;
 
-/// On the way to the mean the grid is corrected again where the curve moves by more than this share.
+/// On the way to the mean positions are corrected at every step, forces where the curve moves by more than this share.
 const CORRECTED_AGAIN: f64 = 0.05;
 
 /// Increase of ‖r/σ‖² that makes a step to the mean too long.
@@ -258,7 +258,7 @@ pub(crate) fn average(
         let moved = (&next - &point).amax() / point.amax();
         point = next;
         simulation.set_unknowns(unknowns.with_values(&point)?);
-        if moved > CORRECTED_AGAIN {
+        if moved > CORRECTED_AGAIN || simulation.task().objective == Objective::Positions {
             simulation.correct();
         }
     }
