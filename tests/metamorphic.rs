@@ -286,7 +286,8 @@ fn the_order_of_vertices_and_frames_does_not_matter() {
 }
 
 /// Noise averages out and misfit does not; additional measurements may justify another control point. (They also tell
-/// descriptions of the curve apart, so that bands over all descriptions shrink otherwise.)
+/// descriptions of the curve apart, so that bands over all descriptions shrink otherwise; what the grid and earlier curves
+/// add to a band stays.)
 #[test]
 fn frames_that_stand_twice_make_bands_narrower_by_root_two_but_for_misfit() {
     for (set, _) in &*MEASURED {
@@ -314,7 +315,7 @@ fn frames_that_stand_twice_make_bands_narrower_by_root_two_but_for_misfit() {
             match before.scatter.misfit > 0.0 || after.scatter.misfit > 0.0 {
                 _ if grown => assert!(curve < 2.0 * rms, "{what}"),
                 true => assert!((0.7..2.0).contains(&wider) && curve < rms, "{what}"),
-                false => assert!(narrower < 0.05 && curve < 0.05 * rms, "{what}: {narrower} {curve}"),
+                false => assert!(narrower < 0.1 && curve < 0.05 * rms, "{what}: {narrower} {curve}"),
             }
         }
     }
