@@ -11,6 +11,7 @@
 
 use cloth_data::frame::MeasurementSet;
 use cloth_fit::incremental::{Stage, fit};
+use cloth_fit::optimise::uncertainty::Source;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};
@@ -66,6 +67,12 @@ fn fitted(set: &MeasurementSet, settings: &Settings) -> [f64; 2] {
     let report = fit(set, &[Stage::Shear], &known, settings, &mut Watch::default()).unwrap();
     let stage = report.stage(Component::Shear).unwrap();
     assert!(stage.converged, "{:?}", stage.levels.iter().map(|l| (l.points, &l.status)).collect::<Vec<_>>());
+    // The sources of the widest band make it up.
+    let halves = stage.curve.samples.iter().filter_map(|row| row.band.map(|[low, high]| 0.5 * (high - low)));
+    let widest = halves.fold(0.0, f64::max);
+    let together = stage.curve.band.values().map(|half| half * half).sum::<f64>().sqrt();
+    assert!((together / widest - 1.0).abs() < 1e-9, "{together} {widest} {:?}", stage.curve.band);
+    assert_eq!(stage.curve.band.contains_key(&Source::Grid), settings.corrected);
     [stress_error(&stage.curve.samples, &law), coverage(&stage.curve.samples, &law)]
 }
 

@@ -59,7 +59,7 @@ fn denim_comes_back() {
             assert!(report.converged && error(&report) <= allowed);
             assert_eq!(report.curve.curve.len(), 5);
             let sequence = &report.sequences[0];
-            assert!(sequence.planar && sequence.at_rest == 2 && sequence.frames == 23);
+            assert!(sequence.planar && sequence.skipped.len() == 2 && sequence.frames == 23);
             assert!(sequence.position_rms.unwrap() < 1.5e-4);
         }
     }

@@ -8,6 +8,7 @@
 //!
 //! Source: Miguel et al. 2012, §5.2.
 
+mod average;
 pub mod bend;
 mod course;
 pub mod gap;
@@ -28,9 +29,9 @@ mod summary;
 mod watch;
 
 pub use course::fit;
-pub use growth::{Growth, domain, grow, refit};
+pub use growth::{Growth, grow, refit};
 pub use growth_rule::{GrowthRule, ResidualMeasure};
-pub use level::Level;
+pub use level::{Level, domain};
 pub use plan::{Plan, kinds_of_all};
 pub use settings::{Constraints, FirstStiffness, Settings, Variant};
 pub(crate) use start::{softest_bending, unyielding};

@@ -126,3 +126,16 @@ impl Begin {
         Some(Self { outward: begin + pushed, length: last.rest - begin, level, apart: b.rest - a.rest })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_median_is_as_sure_as_its_values_agree() {
+        assert_eq!(standard_error(&[1.0, 2.0]), 0.0);
+        assert_eq!(standard_error(&[3.0; 9]), 0.0);
+        // 1.4826 × 1 × √(π/10)
+        assert!((standard_error(&[1.0, 2.0, 3.0, 4.0, 5.0]) - 0.830_996).abs() < 1e-5);
+    }
+}

@@ -8,6 +8,7 @@ use cloth_data::notice::Notice;
 use cloth_fit::incremental::FitReport;
 use cloth_fit::judge::verdict::{Verdict, of_fit, of_stage, widest_band};
 use cloth_fit::stage::report::{SequenceReport, StageReport};
+use cloth_fit::twin::replica::SkippedFrame;
 use std::fmt::Write;
 
 /// Grade and reasons, limits, and the next measurement, followed by the reason why the fit stopped.
@@ -92,7 +93,7 @@ fn next(stage: &StageReport, reasons: &[String]) -> Option<String> {
 
 /// The sources of the widest band, the largest first, as shares of the largest stress.
 fn parts(stage: &StageReport) -> String {
-    let largest = stage.curve.samples.iter().fold(f64::MIN_POSITIVE, |most, row| most.max(row.stress.abs()));
+    let largest = stage.curve.largest_stress();
     let mut parts: Vec<(f64, String)> = stage
         .curve
         .band
@@ -112,7 +113,10 @@ fn oddities(stage: &StageReport) -> String {
             write!(text, " Frame {} of {} is skipped: {}.", dropped.frame, dropped.sequence, dropped.status);
     }
     for sequence in &stage.sequences {
-        let SequenceReport { name, multi_stable, .. } = sequence;
+        let SequenceReport { name, multi_stable, skipped, .. } = sequence;
+        for SkippedFrame { frame, skip } in skipped.iter().filter(|skipped| !skipped.skip.is_rest()) {
+            let _ = write!(text, " Frame {frame} of {name} takes no part: {skip}.");
+        }
         if !multi_stable.is_empty() {
             let _ = write!(
                 text,

@@ -102,24 +102,20 @@ impl<'a> Equilibria<'a> {
         let frame = &replica.frames[place];
         let (finer, fine) = self.finer(replica, frame)?;
         let [coarse_overhang, fine_overhang] = [frame.overhang.as_ref()?, fine.overhang.as_ref()?];
-        let simulate = |replica: &Replica, frame: &ReplicaFrame, mut x: Vec<f64>| {
-            let mut solver = Solver::new(replica.cloth(frame));
-            let found = solver.solve(curves, &mut x, &self.task.settings);
-            self.meter.add(&found);
-            // The pose moves both grids alike.
-            let shape = |point: &MeasuredPoint| -> Vec<f64> {
-                frame.compared_axes().iter().map(|&axis| point.coordinate(&x, axis)).collect()
-            };
-            (found.status == Status::Converged)
-                .then(|| frame.points.iter().flat_map(shape).collect::<Vec<_>>())
-        };
         let edge = state.edge?;
         let mut x = state.x.clone();
         coarse_overhang.hold(edge.slope, &mut x);
         let mut fine_x = fine_overhang.of(coarse_overhang, &x);
         fine_overhang.hold(edge.slope, &mut fine_x);
-        let coarse = simulate(replica, frame, x)?;
-        let fine = simulate(finer, fine, fine_x)?;
+        self.balanced(curves, replica, frame, &mut x)?;
+        self.balanced(curves, finer, fine, &mut fine_x)?;
+        // The pose moves both grids alike.
+        let [coarse, fine] = [(frame, &x), (fine, &fine_x)].map(|(frame, x)| -> Vec<f64> {
+            let shape = |point: &MeasuredPoint| {
+                frame.compared_axes().iter().map(|&axis| point.coordinate(x, axis)).collect::<Vec<_>>()
+            };
+            frame.points.iter().flat_map(shape).collect()
+        });
         let ratio = fine_overhang.grid.cell()[0] / coarse_overhang.grid.cell()[0];
         let axes = frame.compared_axes().len();
         let of_point = extrapolated(&coarse, &fine, ratio);
@@ -130,6 +126,29 @@ impl<'a> Equilibria<'a> {
             }
             _ => of_point,
         })
+    }
+
+    /// Brings a frame to a stable equilibrium; returns its forces along the measured components, N.
+    fn balanced(
+        &self,
+        curves: &Curves,
+        replica: &Replica,
+        frame: &ReplicaFrame,
+        x: &mut [f64],
+    ) -> Option<Vec<f64>> {
+        let mut solver = Solver::new(replica.cloth(frame));
+        let found = solver.solve(curves, x, &self.task.settings);
+        self.meter.add(&found);
+        let clip_forces = solver.clip_forces();
+        let stable = found.status == Status::Converged && !found.escaped;
+        stable.then(|| frame.forces.iter().map(|component| component.of(&clip_forces)).collect())
+    }
+
+    /// Number of frames that no finer grid has corrected, if any should be.
+    pub fn uncorrected(&self) -> usize {
+        let refined = |index: usize| self.finer.iter().any(|finer| finer.name == self.replicas[index].name);
+        let frames = self.frames.iter().zip(&self.states);
+        frames.filter(|((index, _), state)| refined(*index) && state.correction.is_empty()).count()
     }
 
     fn extension(&self, place: usize) -> f64 {
@@ -161,16 +180,8 @@ impl<'a> Equilibria<'a> {
         let replica = &self.replicas[index];
         let frame = &replica.frames[frame];
         let (finer, fine) = self.finer(replica, frame)?;
-        let simulate = |replica: &Replica, frame: &ReplicaFrame, x: &mut [f64]| {
-            let mut solver = Solver::new(replica.cloth(frame));
-            let found = solver.solve(curves, x, &self.task.settings);
-            self.meter.add(&found);
-            let clip_forces = solver.clip_forces();
-            let forces: Vec<f64> = frame.forces.iter().map(|component| component.of(&clip_forces)).collect();
-            (found.status == Status::Converged && !found.escaped).then_some(forces)
-        };
         let mut x = self.states[place].x.clone();
-        let coarse = simulate(replica, frame, &mut x)?;
+        let coarse = self.balanced(curves, replica, frame, &mut x)?;
         let started = interpolated(replica, finer, fine, &x);
         // From the last finer shape, moved as the coarse one has moved since.
         let mut fine_x = match self.states[place].finer.as_deref() {
@@ -179,7 +190,7 @@ impl<'a> Equilibria<'a> {
             }
             None => started.clone(),
         };
-        let fine = simulate(finer, fine, &mut fine_x)?;
+        let fine = self.balanced(curves, finer, fine, &mut fine_x)?;
         let [dx, dy] = replica.specimen.grid.cell();
         let apart = fine_x.iter().zip(&started).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         if apart > OTHER_SHAPE * dx.min(dy) || fine.len() != coarse.len() {

@@ -1,7 +1,7 @@
 //! The frames of one stage under unknown curves.
 
 use super::meter::Meter;
-use super::observation::Observation;
+use super::observation::{Objective, Observation};
 use super::state::{State, start_state};
 use super::task::Task;
 use super::unknowns::{Unknown, Unknowns};
@@ -165,7 +165,7 @@ impl<'a> Equilibria<'a> {
     }
 
     /// Brings all frames to equilibrium under the curve; returns the simulated forces along the measured components
-    /// of each, N. Drops frames without an equilibrium.
+    /// of each, N, as they are compared: corrected for the grid. Drops frames without an equilibrium.
     pub fn settle(&mut self) -> Vec<Vec<f64>> {
         let results = self.solve_frames(&self.curves(), &[], None);
         let mut forces = Vec::new();
@@ -173,8 +173,18 @@ impl<'a> Equilibria<'a> {
         for ((replica, frame), result) in std::mem::take(&mut self.frames).into_iter().zip(results) {
             if result.status == Status::Converged {
                 self.frames.push((replica, frame));
+                let of_forces = self.task.objective == Objective::Forces;
+                let correction =
+                    result.state.correction.iter().filter(|_| of_forces).chain(std::iter::repeat(&0.0));
+                forces.push(
+                    result
+                        .forces
+                        .iter()
+                        .zip(correction)
+                        .map(|(force, correction)| force + correction)
+                        .collect(),
+                );
                 self.states.push(result.state);
-                forces.push(result.forces);
             } else {
                 let Replica { name, frames, .. } = &self.replicas[replica];
                 let (sequence, frame) = (name.clone(), frames[frame].index);

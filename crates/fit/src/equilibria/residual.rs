@@ -4,6 +4,7 @@ use super::frames::Equilibria;
 use super::observation::{Balance, Objective, Observation};
 use crate::optimise::gauss_newton::{Evaluation, Residuals};
 use crate::optimise::robust::Robust;
+use crate::optimise::uncertainty::{Covariance, NoiseSource, Scatter};
 use crate::twin::replica::Replica;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::Status;
@@ -15,7 +16,7 @@ use std::convert::Infallible;
 impl Equilibria<'_> {
     /// Indices of consecutive residuals: one force component of one clip through a sequence, or one coordinate of one
     /// node.
-    pub fn tracks(&self) -> Vec<Vec<usize>> {
+    fn tracks(&self) -> Vec<Vec<usize>> {
         let mut tracks: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
         let mut index = 0;
         for &(replica, frame) in &self.frames {
@@ -97,7 +98,7 @@ impl Equilibria<'_> {
 
     /// Sum of squares, in the units of the residuals, that no cylinder off a table meets, and its degrees of freedom; `None`
     /// without merged points.
-    pub fn repeats(&self) -> Option<(f64, usize)> {
+    fn repeats(&self) -> Option<(f64, usize)> {
         if self.task.robust.is_some() || self.task.objective != Objective::Positions {
             return None;
         }
@@ -111,8 +112,21 @@ impl Equilibria<'_> {
         (freedom > 0).then_some((squares, freedom))
     }
 
+    /// Noise and misfit of an evaluation.
+    pub fn scatter(&self, residual: &DVector<f64>, jacobian: &DMatrix<f64>) -> Scatter {
+        let tracks = self.tracks();
+        let source = match (self.noise_is_known(), self.repeats()) {
+            (true, _) => NoiseSource::Declared(1.0),
+            (false, Some((squares, freedom))) => NoiseSource::Repeats { squares, freedom },
+            (false, None) => NoiseSource::Neighbours(&tracks),
+        };
+        let rank = Covariance::rank_of(jacobian) + self.eliminated();
+        let expected = self.task.robust.map_or(1.0, |robust| robust.mean_of_noise());
+        Scatter { expected, ..Scatter::new(residual, jacobian, rank, source) }
+    }
+
     /// Number of the frames' own unknowns that their measurements determine.
-    pub fn eliminated(&self) -> usize {
+    fn eliminated(&self) -> usize {
         self.states.iter().map(|state| state.eliminated).sum()
     }
 }

@@ -74,9 +74,21 @@ pub fn predict(
         start: SolveStart::LastEquilibrium,
         robust: None,
     };
+    // Curves are those of the continuum, so a prediction is corrected for its grid, too.
+    let corrected = settings.corrected && !settings.model.is_of_springs();
+    let finer = |(sequence, parts): &(&Sequence, Parts)| {
+        Replica::new(sequence, &Parts { refinement: 2, ..parts.clone() })
+    };
+    let between_clips = sequences.iter().filter(|(sequence, _)| corrected && !sequence.clips.is_empty());
+    let finer: Vec<Replica> = between_clips.map(finer).collect::<Result<_>>()?;
     let mut simulation =
-        Equilibria::unsettled(&replicas, task, Unknowns::default(), Arc::clone(&watch.meter));
+        Equilibria::unsettled(&replicas, task, Unknowns::default(), Arc::clone(&watch.meter))
+            .corrected_by(&finer);
     simulation.follow();
+    if simulation.is_corrected() {
+        simulation.settle();
+        simulation.correct();
+    }
     let forces = simulation.settle();
     let counters = watch.meter.read().since(&spent_before);
     Ok(Prediction {

@@ -146,7 +146,7 @@ pub fn of_fit(report: &FitReport) -> Verdict {
 /// Strain at which the band is widest, and half its width as a share of the curve's largest stress.
 pub fn widest_band(stage: &StageReport) -> Option<(f64, f64)> {
     let samples = &stage.curve.samples;
-    let largest = samples.iter().fold(f64::MIN_POSITIVE, |most, sample| most.max(sample.stress.abs()));
+    let largest = stage.curve.largest_stress();
     let widths = samples.iter().filter_map(|sample| {
         let [low, high] = sample.band?;
         Some((sample.strain, 0.5 * (high - low) / largest))

@@ -1,6 +1,7 @@
 //! The course that every stage takes: replicas, a start, equilibria, a curve that grows, and how sure it is.
 
-use super::growth::{Average, Growth, average, grow, refit, scatter};
+use super::average::Average;
+use super::growth::{Growth, grow, refit};
 use super::interventions::Interventions;
 use super::knowledge::Knowledge;
 use super::plan::{Plan, mechanics, unfit};
@@ -62,8 +63,6 @@ pub fn fit(
         let status = growth.outcome.status.to_string();
         return Err(unfit(&replicas, status, "measurements that some curve can answer"));
     }
-    let growth =
-        average(&mut simulation, growth, settings, &[1e-3 * largest], watch).map_err(mechanics(plan))?;
     // The last trial may have been a step that was rejected.
     simulation.set_unknowns(growth.unknowns.clone());
     // A stage has one.
@@ -198,7 +197,7 @@ fn judge(
     complete: bool,
 ) -> Judgement {
     let Outcome { residual, jacobian, .. } = &growth.outcome;
-    let scatter = scatter(simulation, residual, jacobian);
+    let scatter = simulation.scatter(residual, jacobian);
     let observed = is_observed(plan, growth, curve, &scatter, others);
     // What more control points would meet is no misfit: it is in the band as theirs.
     let mut covariance = match &growth.average {

@@ -64,6 +64,9 @@ pub struct Interventions {
     /// Vertices too far off a line of the table to be used for its position.
     #[serde(skip_serializing_if = "is_zero")]
     pub vertices_left_out: usize,
+    /// Frames that no finer grid corrects: it has no equilibrium near theirs. The band does not hold their grid's error.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub frames_uncorrected: usize,
     /// Share of the sheet, over all frames, strained beyond the last control point of a component's curve, where
     /// stress continues straight.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -99,6 +102,7 @@ impl Interventions {
             solves_in_load_steps: counters.in_load_steps,
             frames_not_followed: counters.not_followed,
             vertices_left_out: simulation.vertices_left_out(),
+            frames_uncorrected: simulation.uncorrected(),
             share_extrapolated: simulation.extrapolated(),
             ..Self::from(counters.remedies)
         }
@@ -143,6 +147,10 @@ impl Interventions {
             (self.starts_projected, "infeasible starts projected"),
             (self.residuals_bent, "residuals downweighted"),
             (self.vertices_left_out, "vertices too far off the profile of their overhang"),
+            (
+                self.frames_uncorrected,
+                "frames not corrected for the grid, whose error there is not in the band",
+            ),
         ];
         let counted =
             counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));

@@ -11,8 +11,6 @@
 //! What the data do not tell apart stays in the band; what they do tell is as sharp as with the right number of points
 //! known. Source: MacKay 1992 (evidence), Hoeting et al. 1999 (averages over models), Wahba 1983 (their bands).
 
-use crate::optimise::gauss_newton::{Evaluation, Residuals};
-use crate::optimise::robust::Robust;
 use nalgebra::{DMatrix, DVector};
 
 /// Usual change from end to end and usual second difference of five points, as shares of the stiffness.
@@ -40,77 +38,6 @@ struct Possible {
     cost: f64,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
-}
-
-/// Rows R k ≈ t below a linearised fit that lead it to a posterior: its prior.
-#[derive(Debug, Clone)]
-pub(super) struct Prior {
-    rows: DMatrix<f64>,
-    target: DVector<f64>,
-}
-
-impl Prior {
-    /// * `residual`, `jacobian` — in units of the noise, at `point`
-    /// * `noise` — in units of the residuals of the fit that it leads
-    pub(super) fn behind(
-        posterior: &Posterior,
-        residual: &DVector<f64>,
-        jacobian: &DMatrix<f64>,
-        point: &DVector<f64>,
-        noise: f64,
-    ) -> Option<Self> {
-        let precision = posterior.covariance.clone().cholesky()?.inverse();
-        let product = &precision * &posterior.mean - jacobian.transpose() * (residual + jacobian * point);
-        // Columns of one length.
-        let scale = DVector::from_fn(point.len(), |i, _| posterior.covariance[(i, i)].sqrt());
-        let scaled = |matrix: DMatrix<f64>| {
-            DMatrix::from_fn(scale.len(), scale.len(), |i, j| matrix[(i, j)] * scale[i] * scale[j])
-        };
-        let eigen = scaled(precision - jacobian.transpose() * jacobian).symmetric_eigen();
-        // A mixture may know less of a direction than one fit: then it says nothing of it.
-        let known: Vec<usize> = (0..scale.len()).filter(|&i| eigen.eigenvalues[i] > 0.0).collect();
-        let product = eigen.eigenvectors.transpose() * product.component_mul(&scale);
-        let root = |i: usize| eigen.eigenvalues[known[i]].sqrt();
-        let rows = DMatrix::from_fn(known.len(), scale.len(), |i, j| {
-            noise * root(i) * eigen.eigenvectors[(j, known[i])] / scale[j]
-        });
-        Some(Self { rows, target: DVector::from_fn(known.len(), |i, _| noise * product[known[i]] / root(i)) })
-    }
-}
-
-/// A fit with a prior.
-pub(super) struct Led<'p, P> {
-    pub(super) problem: &'p mut P,
-    pub(super) prior: Option<&'p Prior>,
-}
-
-impl<P: Residuals> Residuals for Led<'_, P> {
-    type Error = P::Error;
-
-    fn robust(&self) -> Option<Robust> {
-        self.problem.robust()
-    }
-
-    fn evaluate(&mut self, point: &DVector<f64>, jacobian: bool) -> Result<Evaluation, P::Error> {
-        let evaluation = self.problem.evaluate(point, jacobian)?;
-        let (Some(Prior { rows, target }), Evaluation::Values { residual, jacobian }) =
-            (self.prior, &evaluation)
-        else {
-            return Ok(evaluation);
-        };
-        let left = target - rows * point;
-        Ok(Evaluation::Values {
-            residual: DVector::from_iterator(
-                residual.len() + left.len(),
-                residual.iter().chain(left.iter()).copied(),
-            ),
-            jacobian: jacobian.as_ref().map(|jacobian| {
-                let mut all = jacobian.clone().insert_rows(jacobian.nrows(), rows.nrows(), 0.0);
-                all.rows_mut(jacobian.nrows(), rows.nrows()).copy_from(rows);
-                all
-            }),
-        })
-    }
 }
 
 impl Posterior {
@@ -180,17 +107,23 @@ impl Posterior {
 fn basis(points: usize) -> Option<DMatrix<f64>> {
     let middle = 0.5 * (points - 1) as f64;
     let square: f64 = (0..points).map(|i| (i as f64 - middle).powi(2)).sum();
+    let bends = second_differences(points);
     let theta = DMatrix::from_fn(points, points, |row, i| match row {
         0 => 1.0 / points as f64,
         // Least-squares slope times the length.
         1 => (i as f64 - middle) * (points - 1) as f64 / square,
-        _ => match (i + 2).wrapping_sub(row) {
-            0 | 2 => 1.0,
-            1 => -2.0,
-            _ => 0.0,
-        },
+        _ => bends[(row - 2, i)],
     });
     theta.try_inverse()
+}
+
+/// S: second differences of control values, one row each.
+pub(super) fn second_differences(points: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(points - 2, points, |i, j| match j.wrapping_sub(i) {
+        0 | 2 => 1.0,
+        1 => -2.0,
+        _ => 0.0,
+    })
 }
 
 #[cfg(test)]
@@ -239,23 +172,5 @@ mod tests {
             let [error, _] = fits(noise, [1.0; POINTS]);
             assert!(error < 1.2 * noise / 60f64.sqrt(), "{noise}: {error}");
         }
-    }
-
-    #[test]
-    fn a_prior_leads_a_fit_to_its_posterior() {
-        let jacobian =
-            DMatrix::from_fn(60, POINTS, |i, j| (1.0 - (i as f64 / 14.75 - j as f64).abs()).max(0.0));
-        let residual = DVector::from_fn(60, |i, _| (i as f64).sin());
-        let point = DVector::from_element(POINTS, 2.0);
-        let posterior = Posterior::new(&residual, &jacobian, &point).unwrap();
-        let prior = Prior::behind(&posterior, &residual, &jacobian, &point, 3.0).unwrap();
-        // In units of the residuals three times as large.
-        let all = DMatrix::from_fn(60 + prior.rows.nrows(), POINTS, |i, j| {
-            if i < 60 { 3.0 * jacobian[(i, j)] } else { prior.rows[(i - 60, j)] }
-        });
-        let target = 3.0 * (&residual + &jacobian * &point);
-        let target = DVector::from_iterator(all.nrows(), target.iter().chain(prior.target.iter()).copied());
-        let found = all.svd(true, true).solve(&target, 1e-14).unwrap();
-        assert!((found - &posterior.mean).amax() < 1e-9 * posterior.mean.amax());
     }
 }

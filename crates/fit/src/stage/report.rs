@@ -6,6 +6,7 @@ use super::settings::Variant;
 use super::shapes::Shapes;
 use crate::equilibria::{Counters, DroppedFrame, Objective};
 use crate::optimise::uncertainty::{Scatter, Source};
+use crate::twin::replica::SkippedFrame;
 use cloth_data::frame::{Kind, Phase};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::material::{Component, Model};
@@ -51,6 +52,11 @@ pub struct CurveReport {
 }
 
 impl CurveReport {
+    /// Largest stress of its rows, N/m; bending: moment, N.
+    pub fn largest_stress(&self) -> f64 {
+        self.samples.iter().fold(f64::MIN_POSITIVE, |most, row| most.max(row.stress.abs()))
+    }
+
     /// Pairs of control values with an absolute correlation above 0.95.
     pub fn correlated(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let row = |(j, row): (usize, &Vec<Option<f64>>)| {
@@ -91,8 +97,8 @@ pub struct SequenceReport {
     pub kind: Kind,
     /// Frames used.
     pub frames: usize,
-    /// Frames left out: no extension, or no measured force.
-    pub at_rest: usize,
+    /// Frames that take no part, each with its reason.
+    pub skipped: Vec<SkippedFrame>,
     /// True if nodes move in the plane only: two unknowns per node.
     pub planar: bool,
     /// Columns and rows of nodes.
@@ -124,7 +130,7 @@ impl SequenceReport {
     ///
     /// * `dropped` — frames without an equilibrium, of this and other sequences
     pub fn left_out(&self, dropped: &[DroppedFrame]) -> usize {
-        self.at_rest + dropped.iter().filter(|frame| frame.sequence == self.name).count()
+        self.skipped.len() + dropped.iter().filter(|frame| frame.sequence == self.name).count()
     }
 }
 

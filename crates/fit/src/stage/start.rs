@@ -1,8 +1,8 @@
 //! Start of a stage, without simulation: a constant stiffness, and constants for unknown curves.
 
 use super::gap;
-use super::growth::domain;
 use super::knowledge::Knowledge;
+use super::level::domain;
 use super::plan::{Plan, mechanics, unfit};
 use super::settings::{Constraints, Settings};
 use crate::equilibria::Objective;

@@ -1,6 +1,7 @@
 //! Builds the report of a stage.
 
-use super::growth::{Finer, Growth};
+use super::average::Finer;
+use super::growth::Growth;
 use super::report::{CurveReport, CurveRow, ForceRow, Histogram, Hysteresis, SequenceReport};
 use super::shapes::Shapes;
 use crate::equilibria::{Equilibria, Settled, Unknown};
@@ -188,7 +189,7 @@ pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>])
                 name: replica.name.clone(),
                 kind: replica.kind,
                 frames: 0,
-                at_rest: replica.skipped.len(),
+                skipped: replica.skipped.clone(),
                 planar: replica.planar,
                 nodes: [grid.columns, grid.rows],
                 force_rms: None,

@@ -31,6 +31,7 @@ use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use layout::Layout;
 use nalgebra::{Vector2, Vector3};
+use rayon::prelude::*;
 use std::borrow::Cow;
 
 pub use edge_pose::EdgePose;
@@ -268,7 +269,7 @@ impl Replica {
         let blend = Blend::new(&specimen.mesh, grip.group_of.iter().map(Option::is_some).collect());
         let mut starts: Vec<Vec<f64>> = sequence
             .frames
-            .iter()
+            .par_iter()
             .map(|frame| blend.shape(&specimen.mesh, |node| grip.place(specimen, frame, node)))
             .collect();
         let bends = parts.components.iter().any(|component| component.is_bending());

@@ -29,7 +29,7 @@ impl Distance {
         let (mut sequences, mut dropped) = (Vec::new(), 0);
         for (stage, sequence) in report.sequences() {
             sequences.push(sequence);
-            dropped += stage.left_out(sequence) - sequence.at_rest;
+            dropped += stage.left_out(sequence) - sequence.skipped.len();
         }
         Self::new(set, &sequences, dropped)
     }

@@ -50,7 +50,7 @@ pub enum Status {
         /// Relative decrease that the linear model still predicts.
         promised: f64,
     },
-    /// The mean over several descriptions of the parameters no longer moves.
+    /// The mean over constant, straight and bent curves no longer moves.
     MeanFound,
     /// No step, however short, lowered the sum of squares as predicted.
     Stalled {
@@ -91,7 +91,7 @@ impl fmt::Display for Status {
             Self::Noise { promised } => {
                 write!(f, "the possible gain, a share of {promised:.0e}, is below the noise of the residual")
             }
-            Self::MeanFound => write!(f, "the mean over its descriptions is found"),
+            Self::MeanFound => write!(f, "the mean over constant, straight and bent curves is found"),
             Self::Stalled { reason: None } => write!(f, "no step, however short, lowered the residual"),
             Self::Stalled { reason: Some(reason) } => {
                 write!(f, "no step, however short, could be evaluated: {reason}")
@@ -124,7 +124,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn at(
+    pub(crate) fn at(
         point: DVector<f64>,
         residual: DVector<f64>,
         jacobian: DMatrix<f64>,

@@ -22,6 +22,13 @@ pub enum Skip {
     },
 }
 
+impl Skip {
+    /// True of a frame at rest, which a test may well have.
+    pub fn is_rest(self) -> bool {
+        matches!(self, Self::AtRest | Self::NothingHangsOver)
+    }
+}
+
 impl fmt::Display for Skip {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
