@@ -11,6 +11,7 @@
 
 use cloth_data::frame::Kind;
 use cloth_fit::incremental::{FitReport, Stage, fit};
+use cloth_fit::judge::verdict::of_stage;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Variant, Watch};
 use cloth_sim::material::{Component, Model};
@@ -44,6 +45,35 @@ fn fit_bending(
 
 fn rigidity(gamma: f64) -> f64 {
     DENSITY * GRAVITY * 0.085f64.powi(3) / gamma
+}
+
+#[test]
+fn a_given_noise_that_the_points_contradict_does_not_make_the_band() {
+    let truth = rigidity(10.0);
+    let moment = |curvature: f64| truth * curvature;
+    let cantilever = Cantilever {
+        kind: Kind::BendWeft,
+        areal_density: DENSITY,
+        moment: &moment,
+        overhangs: &between_rows(12..=20),
+        size: [SIDE; 2],
+        measured: [100, 100],
+        noise: Some((POSITION_NOISE, 4)),
+    };
+    let settings = Settings { variant: Variant::Linear, ..Settings::default() };
+    let [right, small, large] = [1.0, 0.1, 10.0].map(|told| {
+        let mut set = cantilever.measure();
+        set.sequences[0].noise.as_mut().unwrap().position_m = Some(told * POSITION_NOISE);
+        let report =
+            fit(&set, &[Stage::Bend], &Knowledge::default(), &settings, &mut Watch::default()).unwrap();
+        let stage = report.stage(Component::BendWeft).unwrap();
+        let reasons = of_stage(stage, &[]).reasons.join("; ");
+        assert_eq!(reasons.contains("as much as the given noise"), told != 1.0, "{told}: {reasons}");
+        let [low, high] = stage.curve.samples[100].band.unwrap();
+        high - low
+    });
+    println!("half bands {right:.2e}, told a tenth {small:.2e}, ten times {large:.2e}");
+    assert!([small, large].into_iter().all(|other| (other / right - 1.0).abs() < 0.2));
 }
 
 #[test]

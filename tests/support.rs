@@ -46,7 +46,11 @@ impl UniformStretch<'_> {
         let side = 0.1;
         let columns = if self.grip > 0.0 { 11 } else { 2 };
         let grid = Grid { columns, rows: 2, width: side, height: side, diagonals: Diagonals::Forward };
-        let noise = self.noise.as_ref().map(|(force, _)| Noise { position_m: None, force_n: Some(*force) });
+        let noise = self.noise.as_ref().map(|(force, _)| Noise {
+            position_m: None,
+            force_n: Some(*force),
+            clip_m: None,
+        });
         let mut draw = self.noise;
         let mut noisy = |force: Vector3<f64>| match &mut draw {
             Some((deviation, normal)) => force + Vector3::from_fn(|_, _| *deviation * normal()),

@@ -48,6 +48,7 @@ fn simulation<'r>(replicas: &'r [Replica], points: &[f64], values: [&[f64]; 2]) 
         known: Curves::default(),
         settings: settings().equilibrium,
         start: SolveStart::LastEquilibrium,
+        exact_clips: true,
         robust: None,
     };
     Equilibria::new(replicas, task, unknowns, Arc::default())

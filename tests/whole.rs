@@ -147,3 +147,30 @@ fn four_fabrics_come_back() {
 fn four_fabrics_come_back_through_full_noise() {
     comes_back(true, [0.02, 0.05, 0.1]);
 }
+
+/// Coverage of all bands over many seeds, of everything that the rig can add: noise of vertices, forces and clip poses.
+/// `SEEDS=30 cargo test --release -p fit-cloth-tests --test main bands_of_the_rig -- --ignored --nocapture`
+#[test]
+#[ignore = "release: 30 seeds of four fabrics, on 61x61 and 97x97 nodes: hours"]
+fn bands_of_the_rig_hold_the_truth() {
+    let seeds: u64 = std::env::var("SEEDS").map_or(30, |seeds| seeds.parse().expect("SEEDS: a number"));
+    for nodes in [61, 97] {
+        for name in KnownFabric::names() {
+            let fabric = KnownFabric::named(name).unwrap();
+            let truth = fabric.curves().unwrap();
+            let mut sums = vec![0.0; Component::ALL.len()];
+            for seed in 1..=seeds {
+                let rig = Rig { nodes: [nodes; 2], clip_noise: true, seed, ..Rig::default() };
+                let report = fit_all(&rig.measure(&fabric).unwrap(), Model::Stvk);
+                for (sum, component) in sums.iter_mut().zip(Component::ALL) {
+                    *sum += held(report.stage(component).unwrap(), &truth) / seeds as f64;
+                }
+            }
+            let pooled = sums.iter().sum::<f64>() / sums.len() as f64;
+            let each: Vec<String> =
+                Component::ALL.iter().zip(&sums).map(|(c, held)| format!("{c} {held:.2}")).collect();
+            println!("{name:18} {nodes} nodes, {seeds} seeds: {pooled:.3} inside; {}", each.join(", "));
+            assert!(pooled >= 0.9 && sums.iter().all(|&held| held >= 0.6), "{name}");
+        }
+    }
+}

@@ -92,7 +92,11 @@ impl Cantilever<'_> {
             name: self.kind.to_string(),
             kind: self.kind,
             gravity: Vector3::new(0.0, 0.0, -GRAVITY),
-            noise: self.noise.map(|(noise, _)| Noise { position_m: Some(noise), force_n: None }),
+            noise: self.noise.map(|(noise, _)| Noise {
+                position_m: Some(noise),
+                force_n: None,
+                clip_m: None,
+            }),
             force_direction: None,
             table: Some(Table {
                 edge_point_m: [0.0; 3],
@@ -231,7 +235,10 @@ mod tests {
         let exact = cantilever(Kind::BendWeft, &[0.05, 0.08], None).sequence();
         let noisy = |seed| cantilever(Kind::BendWeft, &[0.05, 0.08], Some((POSITION_NOISE, seed))).sequence();
         let sequence = noisy(3);
-        assert_eq!(sequence.noise, Some(Noise { position_m: Some(POSITION_NOISE), force_n: None }));
+        assert_eq!(
+            sequence.noise,
+            Some(Noise { position_m: Some(POSITION_NOISE), force_n: None, clip_m: None })
+        );
         assert_eq!(sequence, noisy(3));
         assert_ne!(sequence, noisy(4));
         let shapes = sequence.frames.iter().zip(&exact.frames);

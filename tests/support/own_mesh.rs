@@ -10,7 +10,7 @@ use cloth_fit::equilibria::{Equilibria, Objective, Settled, SolveStart, Task, Un
 use cloth_fit::stage::{Plan, Settings, bend, shear, stretch};
 use cloth_fit::twin::replica::Replica;
 use cloth_sim::material::{Component, Curves};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 use std::sync::Arc;
@@ -49,6 +49,7 @@ pub fn equilibria<T>(
         known: curves.clone(),
         settings: settings.equilibrium,
         start: SolveStart::LastEquilibrium,
+        exact_clips: true,
         robust: None,
     };
     let mut simulation = Equilibria::new(&replicas, task, Unknowns::default(), Arc::default());
@@ -107,7 +108,7 @@ pub fn with_noise(
     let mut set = exact.clone();
     for sequence in &mut set.sequences {
         let force = force(sequence.kind);
-        sequence.noise = Some(Noise { position_m: Some(position), force_n: Some(force) });
+        sequence.noise = Some(Noise { position_m: Some(position), force_n: Some(force), clip_m: Some(0.0) });
         for frame in &mut sequence.frames {
             for cord in &mut frame.cords {
                 cord.force += match sequence.force_direction {
@@ -117,6 +118,35 @@ pub fn with_noise(
             }
             for place in frame.positions.iter_mut().flatten() {
                 *place += Vector3::from_fn(|_, _| normal(position));
+            }
+        }
+    }
+    set
+}
+
+/// Shifts and turns every clip about its centre, in every frame, and declares it to the fit.
+///
+/// * `deviation` — standard deviation of a clip's place along each axis, m; over its length, of its angles
+pub fn with_shaken_clips(set: &MeasurementSet, seed: u64, deviation: f64) -> MeasurementSet {
+    let mut random = StdRng::seed_from_u64(seed);
+    let mut normals = |deviation: f64| {
+        Vector3::from_fn(|_, _| -> f64 {
+            let sample: f64 = StandardNormal.sample(&mut random);
+            deviation * sample
+        })
+    };
+    let mut set = set.clone();
+    for sequence in &mut set.sequences {
+        sequence.noise.as_mut().expect("declared noise").clip_m = Some(deviation);
+        for frame in &mut sequence.frames {
+            for (pose, clip) in frame.poses.iter_mut().zip(&sequence.clips) {
+                let places: Vec<Vector3<f64>> =
+                    clip.vertices.iter().map(|&vertex| sequence.mesh.positions[vertex]).collect();
+                let centre = places.iter().sum::<Vector3<f64>>() / places.len() as f64;
+                let length = places.iter().map(|place| 2.0 * (place - centre).norm()).fold(0.0, f64::max);
+                let turn = UnitQuaternion::from_scaled_axis(normals(deviation / length));
+                let about = Isometry3::rotation_wrt_point(turn, *pose * Point3::from(centre));
+                *pose = Translation3::from(normals(deviation)) * about * *pose;
             }
         }
     }

@@ -90,7 +90,7 @@ impl PictureFrame {
             name: Kind::Shear.to_string(),
             kind: Kind::Shear,
             gravity: Vector3::zeros(),
-            noise: self.noise.map(|_| Noise { position_m: None, force_n: Some(FORCE_NOISE) }),
+            noise: self.noise.map(|_| Noise { position_m: None, force_n: Some(FORCE_NOISE), clip_m: None }),
             force_direction: None,
             table: None,
             mesh,

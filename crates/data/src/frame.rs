@@ -76,6 +76,11 @@ impl Sequence {
         self.noise.and_then(|noise| noise.force_n).unwrap_or(USUAL_NOISE[1])
     }
 
+    /// Standard deviation of a clip's place along each axis, m: as told, else that told of a vertex, else 0.
+    pub fn clip_noise(&self) -> f64 {
+        self.noise.and_then(|noise| noise.clip()).unwrap_or(0.0)
+    }
+
     /// Area of the rest mesh, m².
     pub fn area(&self) -> f64 {
         (0..self.mesh.triangles.len()).map(|triangle| 0.5 * self.mesh.double_area(triangle)).sum()
@@ -100,6 +105,18 @@ pub struct Noise {
     /// Of each component of a clip force, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<f64>,
+    /// Of a clip's place along each axis, m; over the clip's length, of its angles. 0: exact. Default: that of a vertex.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clip_m: Option<f64>,
+}
+
+impl Noise {
+    /// Standard deviation of a clip's place along each axis, m, if known: as told, else that of a vertex.
+    // Inlined into a sequence without noise, rustc 1.95 reads it through an address that it never set, and crashes.
+    #[inline(never)]
+    pub fn clip(&self) -> Option<f64> {
+        self.clip_m.or(self.position_m)
+    }
 }
 
 /// The table that a bending specimen lies on.

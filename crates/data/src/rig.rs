@@ -43,7 +43,7 @@ use crate::locator::Locator;
 use cloth_sim::material::Curves;
 use cloth_sim::mesh::{Diagonals, Mesh};
 use nalgebra::Vector3;
-use noise::Instruments;
+use noise::{Instruments, Tracked};
 use rayon::prelude::*;
 use schedule::{Step, outward, there_and_back};
 use std::collections::BTreeSet;
@@ -161,27 +161,29 @@ impl Rig {
             samples.iter().map(|sample| sample.interpolate(&mesh, &state.positions)).collect()
         };
         let mut instruments = Instruments::new(self, fabric.loading_ratio, &kind.to_string());
-        let frames = states.iter().zip(&test.steps).enumerate().map(|(index, (state, step))| Frame {
-            time: Some(FRAME_TIME * index as f64),
-            ..observe(&test, step, state, shape(state), &mut instruments)
-        });
-        let frames = frames.collect();
         let clips = test.grips().iter().map(|grip| Clip {
             name: grip.name.into(),
             mass_kg: grip.mass_kg,
             vertices: test.gripped(&seen, grip),
         });
+        let clips: Vec<Clip> = clips.collect();
+        let tracked = Tracked::of(&clips, &seen, kind.holding() == Holding::PictureFrame);
+        let frames = states.iter().zip(&test.steps).enumerate().map(|(index, (state, step))| Frame {
+            time: Some(FRAME_TIME * index as f64),
+            ..observe(&test, &tracked, step, state, shape(state), &mut instruments)
+        });
+        let frames = frames.collect();
         Ok(Sequence {
             name: kind.to_string(),
             kind,
             gravity: test.gravity,
-            noise: instruments.noise(),
+            noise: instruments.noise(!clips.is_empty()),
             force_direction: None,
             table: match test.support {
                 Support::Table { table, .. } => Some(table),
                 Support::Clips(_) => None,
             },
-            clips: clips.collect(),
+            clips,
             frames,
             mesh: seen,
         })
@@ -191,13 +193,12 @@ impl Rig {
 /// Measures a frame with the instruments.
 fn observe(
     test: &Test,
+    tracked: &[Tracked],
     step: &Step,
     state: &State,
     shape: Vec<Vector3<f64>>,
     instruments: &mut Instruments<'_>,
 ) -> Frame {
-    let [width, height] = test.sheet.size;
-    let hinged = test.kind.holding() == Holding::PictureFrame;
     let grips = test.grips();
     let mut cord = |(clip, hold): (usize, &Vector3<f64>)| {
         let weight = test.gravity * grips[clip].mass_kg;
@@ -211,7 +212,7 @@ fn observe(
         time: None,
         cycle: Some(step.cycle),
         phase: Some(step.phase),
-        poses: instruments.poses(poses, hinged, width.max(height)),
+        poses: instruments.poses(poses, tracked),
         cords,
         positions: Some(positions),
     }

@@ -170,7 +170,7 @@ pub fn read_strip(path: &Path, test: &StripTest) -> Result<Strip> {
         name: test.name.clone(),
         kind: test.direction.kind(),
         gravity: Vector3::zeros(),
-        noise: test.force_noise.map(|force| Noise { position_m: None, force_n: Some(force) }),
+        noise: test.force_noise.map(|force| Noise { position_m: None, force_n: Some(force), clip_m: None }),
         force_direction: Some(pull),
         table: None,
         mesh,

@@ -14,7 +14,7 @@ use crate::bending::Bending;
 use crate::curve::NegativeStrain;
 use crate::element::{
     Element, EnergyPass, GradientPass, HessianKind, HessianPass, ParameterPass, Pass, PredictedStrainPass,
-    StrainPass, gather,
+    StiffnessPass, StrainPass, gather,
 };
 use crate::error::{Error, Result};
 use crate::linear::matrix::Pattern;
@@ -289,6 +289,15 @@ impl Cloth {
             derivative: &mut derivative,
             columns,
         });
+    }
+
+    /// K d, N, 3 per node, held nodes included: change of the gradient by a displacement of any nodes.
+    ///
+    /// * `displacement` — d, 3 stacked coordinates per node, m
+    pub fn stiffness_times(&self, curves: &Curves, x: &[f64], displacement: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; x.len()];
+        self.visit(&mut StiffnessPass { law: curves, x, displacement, force: &mut force });
+        force
     }
 
     /// All strains of a component, each with the area (m²) it represents.

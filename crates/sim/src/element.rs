@@ -315,6 +315,50 @@ impl<L: Law> Pass for ParameterPass<'_, L> {
     }
 }
 
+/// Stiffness matrix times a displacement, N: Σ (∇²E) d over the elements that it moves.
+pub(crate) struct StiffnessPass<'a, L> {
+    pub(crate) law: &'a L,
+    pub(crate) x: &'a [f64],
+    pub(crate) displacement: &'a [f64],
+    pub(crate) force: &'a mut [f64],
+}
+
+impl<L: Law> Pass for StiffnessPass<'_, L> {
+    fn visit<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
+        &mut self,
+        part: usize,
+        elements: &[E],
+    ) {
+        for (index, element) in elements.iter().enumerate() {
+            let (nodes, components, area) = (element.nodes(), element.components(), element.area());
+            let moved = gather::<K, N>(nodes, self.displacement);
+            if moved.iter().all(|d| d.iter().all(|&d| d == 0.0)) {
+                continue;
+            }
+            let x = gather(nodes, self.x);
+            let (strains, gradients) = element.evaluate(&x);
+            let site = Site { part, element: index, components };
+            let Stresses { stress, tangent } = self.law.stresses(&site, &strains);
+            let change: [f64; S] =
+                std::array::from_fn(|c| (0..K).map(|a| gradients[c][a].dot(&moved[a])).sum());
+            let mut blocks = [[Block::<N>::zeros(); K]; K];
+            element.add_geometric(&x, &stress, &mut blocks);
+            complete(&mut blocks);
+            for a in 0..K {
+                let scaled = scaled::<K, N, S, L>(&tangent, &gradients, a);
+                let mut force: Point<N> = (0..S).map(|c| scaled[c] * change[c]).sum();
+                for b in 0..K {
+                    force +=
+                        if b <= a { blocks[a][b] * moved[b] } else { blocks[b][a].transpose() * moved[b] };
+                }
+                for i in 0..N {
+                    self.force[3 * nodes[a] + i] += area * force[i];
+                }
+            }
+        }
+    }
+}
+
 /// First-order prediction of the membrane's strains after a step: ε(x) + ∇ε(x)·Δx, `S` per element.
 pub(crate) struct PredictedStrainPass<'a> {
     pub(crate) x: &'a [f64],

@@ -1,7 +1,7 @@
 //! The assembled cloth against finite differences, and under rigid motions.
 //!
 //! ```text
-//!  ▌▔▔▔▔▔▐   goal    gradient = dE/dx, Hessian and clip border = d(gradient)/dx, parameter gradient = d(gradient)/dk
+//!  ▌▔▔▔▔▔▐   goal    gradient = dE/dx, Hessian, clip border, K d = d(gradient)/dx; parameter gradient = d(gradient)/dk
 //!  ▌ 4×5 ▐   states  a stretched, sheared and crumpled grid between two clips; every model; in the plane and in space
 //!  ▌▁▁▁▁▁▐   passes  1e-6 relative; forces turn with a rigid motion to 1e-9 (a kilometre away: 1e-6)
 //! ```
@@ -225,6 +225,28 @@ fn the_parameter_gradient_is_the_derivative_in_every_control_value() {
             let error = derivative_error(value, rows.as_slice(), k, 0.1 * k[0], 0.0);
             assert!(error < 1e-9, "{name}, {component}: {error:e}");
         }
+    }
+}
+
+#[test]
+fn the_stiffness_times_a_displacement_is_the_derivative_along_it() {
+    for (name, sample) in cases() {
+        let cloth = sample.cloth().unwrap();
+        // One clip turns; in a planar problem nothing moves along z.
+        let axis = if sample.planar { Vector3::z() } else { Vector3::new(0.3, -0.2, 1.0) };
+        let mut displacement = vec![0.0; sample.start.len()];
+        for held in sample.held.iter().filter(|held| held.clip == Some(1)) {
+            let own = 3 * held.node..3 * held.node + 3;
+            let moved = axis.cross(&Vector3::from_column_slice(&sample.start[own.clone()]));
+            displacement[own].copy_from_slice(moved.as_slice());
+        }
+        let value = |along: &[f64]| {
+            let x: Vec<f64> = sample.start.iter().zip(&displacement).map(|(x, d)| x + along[0] * d).collect();
+            gradient(&cloth, &sample.curves, &x).1
+        };
+        let rows = cloth.stiffness_times(&sample.curves, &sample.start, &displacement);
+        let error = derivative_error(value, &rows, &[0.0], 1e-5, 0.0);
+        assert!(error < 1e-6, "{name}: {error:e}");
     }
 }
 

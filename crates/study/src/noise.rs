@@ -61,8 +61,8 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
         let finer = stage.reference.clone();
         stage.reference.curves.set(component, own.curve.curve.clone());
         let exact = own_mesh::simulated(&stage.scene, &stage.reference, &stage.settings)?;
-        let told = with_noise(&exact, 0.0, 1.0, 1);
-        let floor = floor(&stage.fit(&told)?);
+        let noisy = with_noise(&exact, 1.0, 1.0, 0);
+        let floor = floor(&stage.fit(&noisy)?);
         runs.extend(stage.series("own mesh", component, &exact, floor, extent, progress));
         stage.reference = finer;
         runs.extend(stage.series("finer mesh", component, &fine, floor, extent, progress));
@@ -71,7 +71,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
 }
 
 /// Cramér–Rao floor at the instruments' noise, over the largest stress of the range. It comes from a fit to exact data
-/// with that noise declared, so that the confidence bands contain noise only.
+/// with that noise alone, drawn and declared: noise that was declared only would not stand in the bands.
 fn floor(stage: &StageReport) -> Option<f64> {
     let samples = &stage.curve.samples;
     let largest = samples.iter().map(|sample| sample.stress.abs()).fold(0.0, f64::max);

@@ -6,16 +6,17 @@ use crate::notice::Notice;
 /// Refuses a noise value that cannot weight residuals. Files cannot contain one, but a set built in memory can.
 pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notice>) {
     let Some(noise) = sequence.noise else { return };
-    for (field, deviation) in [("position_m", noise.position_m), ("force_n", noise.force_n)] {
-        let Some(deviation) = deviation.filter(|&deviation| !(deviation > 0.0 && deviation.is_finite()))
+    let mut refuse = |field: &str, deviation: Option<f64>, allowed: fn(f64) -> bool, expected: &str| {
+        let Some(deviation) = deviation.filter(|&deviation| !(allowed(deviation) && deviation.is_finite()))
         else {
-            continue;
+            return;
         };
-        notices.push(Notice::refusal(
-            &sequence.name,
-            format!("test.toml noise.{field}"),
-            deviation.to_string(),
-            "a standard deviation above 0, or none where it is not known",
-        ));
-    }
+        let place = format!("test.toml noise.{field}");
+        notices.push(Notice::refusal(&sequence.name, place, deviation.to_string(), expected));
+    };
+    let known = "a standard deviation above 0, or none where it is not known";
+    refuse("position_m", noise.position_m, |deviation| deviation > 0.0, known);
+    refuse("force_n", noise.force_n, |deviation| deviation > 0.0, known);
+    let exact = "a standard deviation of 0 (exact poses) or more";
+    refuse("clip_m", noise.clip_m, |deviation| deviation >= 0.0, exact);
 }

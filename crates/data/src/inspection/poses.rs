@@ -23,7 +23,8 @@ pub(super) fn check(_: &Fabric, sequence: &mut Sequence, notices: &mut Vec<Notic
 }
 
 fn elsewhere(sequence: &Sequence) -> Option<Notice> {
-    let allowed = f64::max(NOISE * sequence.position_noise(), SHARE * sequence.area().sqrt());
+    let noise = f64::max(sequence.position_noise(), sequence.clip_noise());
+    let allowed = f64::max(NOISE * noise, SHARE * sequence.area().sqrt());
     let mut worst: Option<(usize, usize, f64)> = None;
     let mut off = 0;
     for index in 0..sequence.frames.len() {
@@ -59,6 +60,7 @@ fn elsewhere(sequence: &Sequence) -> Option<Notice> {
 
 /// Ratio of the observed clip motion to that of the poses: the slope of one over the other through all frames.
 fn motion(sequence: &Sequence) -> Option<Notice> {
+    let [of_vertex, of_pose] = [sequence.position_noise(), sequence.clip_noise()].map(|noise| noise * noise);
     let (mut both, mut posed, mut variance) = (0.0, 0.0, 0.0);
     for clip in 0..sequence.clips.len() {
         let middles: Vec<_> = (0..sequence.frames.len()).filter_map(|i| middles(sequence, i, clip)).collect();
@@ -66,12 +68,13 @@ fn motion(sequence: &Sequence) -> Option<Notice> {
         for Middles { places, vertices } in &middles {
             let [seen, put] = [places[0] - seen, places[1] - put];
             both += seen.dot(&put);
-            posed += put.norm_squared();
-            variance += (sequence.position_noise() * put.norm()).powi(2) / *vertices as f64;
+            // Noise of a pose makes its motion longer.
+            posed += put.norm_squared() - 3.0 * of_pose;
+            variance += (of_vertex / *vertices as f64 + of_pose) * put.norm_squared();
         }
     }
     let off = both / posed - 1.0;
-    (off.abs() > f64::max(SAME_MOTION, SURE * variance.sqrt() / posed)).then(|| {
+    (posed > 0.0 && off.abs() > f64::max(SAME_MOTION, SURE * variance.sqrt() / posed)).then(|| {
         Notice::doubt(
             &sequence.name,
             "clips.csv against positions.npy",

@@ -1,6 +1,7 @@
 use super::*;
 use crate::frame::Frame;
 use crate::io::read_set;
+use crate::rig::{KnownFabric, Rig};
 use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
 
@@ -94,6 +95,17 @@ fn poses_of_another_scale_than_shapes_are_doubted_by_how_much() {
         doubted(&notices, &["clips.csv against positions.npy", way, "one calibration"]);
         let told = figure(&notices[0], &format!("% {way}"));
         assert!((told - 100.0 * f64::abs(1.0 / factor - 1.0)).abs() < 0.5, "{}", notices[0]);
+    }
+}
+
+#[test]
+fn noise_of_clip_poses_is_no_other_scale() {
+    let sequences = vec![Kind::StretchWeft, Kind::StretchWarp];
+    let noisy = Rig { clip_noise: true, sequences, nodes: [13, 13], measured: [25, 25], ..Rig::default() };
+    let fabric = KnownFabric::named("cotton-denim").unwrap();
+    for seed in 1..=10 {
+        let notices = inspect(&Rig { seed, ..noisy.clone() }.measure(&fabric).unwrap()).notices;
+        assert!(notices.is_empty(), "{seed}: {}", notices[0]);
     }
 }
 
@@ -491,6 +503,12 @@ fn noise_by_which_nothing_can_be_weighed_is_refused() {
             sequence.noise.as_mut().unwrap().position_m = Some(deviation);
         });
         refused(&notices, &["noise.position_m", "above 0"]);
+    }
+    for deviation in [-1e-4, f64::INFINITY] {
+        let notices = noticed("stretch-weft", |_, sequence| {
+            sequence.noise.as_mut().unwrap().clip_m = Some(deviation);
+        });
+        refused(&notices, &["noise.clip_m", "0 (exact poses)"]);
     }
     assert_eq!(noticed("bend-weft", |_, sequence| sequence.noise = None), []);
 }

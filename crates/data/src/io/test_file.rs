@@ -50,6 +50,15 @@ pub(super) fn read(path: &Path, vertices: usize) -> Result<TestFile> {
             }
         }
     }
+    if let Some(value) = test.noise.and_then(|noise| noise.clip_m)
+        && !(value >= 0.0 && value.is_finite())
+    {
+        return Err(file.invalid(
+            "noise.clip_m",
+            value.to_string(),
+            "a standard deviation of 0 (exact poses) or more",
+        ));
+    }
     match (test.table, bends(test.kind)) {
         (Some(table), true) => check_table(&file, &table)?,
         (None, true) => return Err(file.invalid("table", "nothing", "[table], for a bending test")),

@@ -45,7 +45,7 @@ fn stretch() -> Sequence {
         name: "stretch-weft".into(),
         kind: Kind::StretchWeft,
         gravity: Vector3::new(0.0, 0.0, -9.81),
-        noise: Some(Noise { position_m: Some(7.5e-5), force_n: None }),
+        noise: Some(Noise { position_m: Some(7.5e-5), force_n: None, clip_m: None }),
         force_direction: Some(Vector3::new(0.6, 0.8, 0.0)),
         table: None,
         mesh: mesh(),

@@ -1,8 +1,9 @@
 //! Instruments: noise and friction added to the exact values.
 
 use super::protocol::Rig;
-use crate::frame::{MeasurementSet, Noise, Phase};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use crate::frame::{Clip, MeasurementSet, Noise, Phase};
+use cloth_sim::mesh::Mesh;
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -14,6 +15,28 @@ const FORCE_NOISE: f64 = 3.0e-3;
 
 /// Friction of the cords, N: half the width of the resulting hysteresis of about 0.1 N (Miguel et al. 2012, §3).
 const CORD_FRICTION: f64 = 0.05;
+
+/// A body whose pose the cameras see: by many vertices in reality, here by one at each of its ends.
+pub(super) struct Tracked {
+    /// Centre of its vertices at rest, m.
+    centre: Point3<f64>,
+    /// Distance of the two that are farthest apart, m.
+    length: f64,
+}
+
+impl Tracked {
+    /// One body a clip; bars hinged together are one, with common corners.
+    pub(super) fn of(clips: &[Clip], mesh: &Mesh, hinged: bool) -> Vec<Self> {
+        let body = |vertices: Vec<usize>| {
+            let at = |&vertex: &usize| mesh.positions[vertex];
+            let centre = vertices.iter().map(at).sum::<Vector3<f64>>() / vertices.len() as f64;
+            let apart = |a: &usize| vertices.iter().map(|b| (at(a) - at(b)).norm()).fold(0.0, f64::max);
+            Self { centre: centre.into(), length: vertices.iter().map(apart).fold(0.0, f64::max) }
+        };
+        let vertices = clips.iter().map(|clip| clip.vertices.clone());
+        if hinged { vec![body(vertices.flatten().collect())] } else { vertices.map(body).collect() }
+    }
+}
 
 /// The instruments of one sequence.
 pub(super) struct Instruments<'a> {
@@ -31,8 +54,11 @@ impl<'a> Instruments<'a> {
     }
 
     /// The standard deviations; `None` without noise.
-    pub(super) fn noise(&self) -> Option<Noise> {
-        let noise = Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE) };
+    ///
+    /// * `clips` — there are any
+    pub(super) fn noise(&self, clips: bool) -> Option<Noise> {
+        let clip_m = clips.then_some(if self.rig.clip_noise { POSITION_NOISE } else { 0.0 });
+        let noise = Noise { position_m: Some(POSITION_NOISE), force_n: Some(FORCE_NOISE), clip_m };
         self.rig.noise.then_some(noise)
     }
 
@@ -65,28 +91,23 @@ impl<'a> Instruments<'a> {
         self.noisy(force, FORCE_NOISE)
     }
 
-    /// Measured poses of the clips. A clip is tracked by many vertices in reality; here by one at each of its ends.
-    /// Bars hinged together are measured as one frame with common corners.
-    ///
-    /// * `length` — length of the clips, m
-    pub(super) fn poses(
-        &mut self,
-        exact: Vec<Isometry3<f64>>,
-        hinged: bool,
-        length: f64,
-    ) -> Vec<Isometry3<f64>> {
+    /// Measured poses of the clips, one for each tracked body or, of bars hinged together, for all.
+    pub(super) fn poses(&mut self, exact: Vec<Isometry3<f64>>, tracked: &[Tracked]) -> Vec<Isometry3<f64>> {
         if !(self.rig.noise && self.rig.clip_noise) {
             return exact;
         }
-        let mut common = None;
-        let mut error = || {
-            let [shift, turn] = [self.normals(POSITION_NOISE), self.normals(POSITION_NOISE / length)];
-            Isometry3::from_parts(Translation3::from(shift), UnitQuaternion::from_scaled_axis(turn))
+        let mut error = |pose: &Isometry3<f64>, Tracked { centre, length }: &Tracked| {
+            let turn = UnitQuaternion::from_scaled_axis(self.normals(POSITION_NOISE / length));
+            let about = Isometry3::rotation_wrt_point(turn, pose * centre);
+            Translation3::from(self.normals(POSITION_NOISE)) * about
         };
-        exact
-            .into_iter()
-            .map(|pose| if hinged { *common.get_or_insert_with(&mut error) * pose } else { error() * pose })
-            .collect()
+        match tracked {
+            [all] => {
+                let common = exact.first().map(|first| error(first, all));
+                exact.iter().map(|pose| common.unwrap_or_default() * pose).collect()
+            }
+            _ => exact.iter().zip(tracked).map(|(pose, own)| error(pose, own) * pose).collect(),
+        }
     }
 
     fn noisy(&mut self, exact: Vector3<f64>, deviation: f64) -> Vector3<f64> {
@@ -120,8 +141,11 @@ pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> M
             frame.cords.iter_mut().for_each(|cord| cord.force += normals(FORCE_NOISE));
             frame.positions.iter_mut().flatten().for_each(|place| *place += normals(POSITION_NOISE));
         }
-        sequence.noise =
-            Some(Noise { position_m: Some(told * POSITION_NOISE), force_n: Some(told * FORCE_NOISE) });
+        sequence.noise = Some(Noise {
+            position_m: Some(told * POSITION_NOISE),
+            force_n: Some(told * FORCE_NOISE),
+            clip_m: (!sequence.clips.is_empty()).then_some(0.0),
+        });
     }
     set
 }

@@ -103,7 +103,7 @@ fn the_first_frame_is_the_rest_and_every_row_another() {
     let expected =
         [(0, Phase::Hold), (0, up), (0, up), (0, up), (0, down), (0, down), (1, up), (1, up), last];
     assert_eq!(steps, expected);
-    assert_eq!(sequence.noise, Some(Noise { position_m: None, force_n: Some(0.01) }));
+    assert_eq!(sequence.noise, Some(Noise { position_m: None, force_n: Some(0.01), clip_m: None }));
     assert_eq!((sequence.name.as_str(), sequence.gravity), ("stretch-weft", Vector3::zeros()));
 }
 

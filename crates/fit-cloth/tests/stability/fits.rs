@@ -181,6 +181,7 @@ fn unseen_points(row: &mut Row, seed: u64) -> bool {
         measurements: 3 * n,
         freedom,
         expected: 1.0,
+        contradicted: None,
     };
     let covariance = Covariance::new(&jacobian, &scatter);
     let deviations = covariance.standard_deviations();

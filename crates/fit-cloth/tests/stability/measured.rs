@@ -56,7 +56,11 @@ impl Uniform<'_> {
             name: self.kind.to_string(),
             kind: self.kind,
             gravity: Vector3::zeros(),
-            noise: self.noise.map(|(force, _)| Noise { position_m: None, force_n: Some(force) }),
+            noise: self.noise.map(|(force, _)| Noise {
+                position_m: None,
+                force_n: Some(force),
+                clip_m: None,
+            }),
             force_direction: None,
             table: None,
             frames: frames.collect(),
@@ -133,7 +137,7 @@ pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64
     sequence.mesh = Mesh { grid: None, ..grid.mesh().unwrap() };
     let column = |column: usize| (0..9).map(|row| grid.node(column, row)).collect();
     // Otherwise a noise of 0.1 mm is assumed.
-    sequence.noise = Some(Noise { position_m: Some(1e-5 * side), force_n: None });
+    sequence.noise = Some(Noise { position_m: Some(1e-5 * side), force_n: None, clip_m: None });
     sequence.clips[0].vertices = column(0);
     sequence.clips[1].vertices = column(8);
     for (index, frame) in sequence.frames.iter_mut().enumerate() {

@@ -298,7 +298,7 @@ const MATERIAL: &str = r#"{
 fn set() -> MeasurementSet {
     let mut set = full_set();
     let weft = set.sequences.iter_mut().find(|sequence| sequence.name == "stretch-weft").unwrap();
-    weft.noise = Some(Noise { position_m: Some(7.5e-5), force_n: Some(3e-3) });
+    weft.noise = Some(Noise { position_m: Some(7.5e-5), force_n: Some(3e-3), clip_m: None });
     weft.force_direction = Some(Vector3::new(0.6, 0.8, 0.0));
     for (index, frame) in weft.frames.iter_mut().enumerate() {
         frame.time = Some(2.0 * index as f64);

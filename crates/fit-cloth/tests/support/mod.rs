@@ -105,7 +105,7 @@ fn bend(kind: Kind) -> Sequence {
     let table =
         Table { edge_point_m: (SIDE * along).into(), edge_direction: across.into(), outward: along.into() };
     let gravity = Vector3::new(0.0, 0.0, -GRAVITY);
-    let noise = Some(Noise { position_m: Some(POSITION_NOISE), force_n: None });
+    let noise = Some(Noise { position_m: Some(POSITION_NOISE), force_n: None, clip_m: None });
     Sequence { gravity, noise, table: Some(table), ..sequence(kind, mesh.clone(), Vec::new(), frames.into()) }
 }
 

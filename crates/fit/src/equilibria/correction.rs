@@ -8,13 +8,13 @@
 //! sequence are corrected, the others by their extension in between. Source: Fox 1947; Pereyra 1966.
 
 use super::frames::Equilibria;
-use super::observation::Objective;
+use super::observation::{Objective, Observation};
 use super::state::State;
 use crate::twin::replica::{MeasuredPoint, Replica, ReplicaFrame};
 use cloth_data::locator::Locator;
-use cloth_sim::equilibrium::{Solver, Status};
+use cloth_sim::equilibrium::{Solver, Status, Tolerance};
 use cloth_sim::material::Curves;
-use nalgebra::{DVector, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -23,6 +23,9 @@ const SAMPLES: usize = 4;
 
 /// A finer equilibrium is another one if a node lies farther from the coarser one than this share of a cell.
 const OTHER_SHAPE: f64 = 0.5;
+
+/// Tolerance of equilibria whose forces are compared: their difference is a hundredth of these. Shapes need the full one.
+const EXACT: Tolerance = Tolerance::Relative(1e-5);
 
 /// The correction of one frame between clips.
 struct Corrected {
@@ -77,15 +80,18 @@ impl<'a> Equilibria<'a> {
         }
     }
 
-    /// The correction in all residuals, in their units; zero where there is none.
+    /// The correction in all residuals, in their units, without the errors of the clips' poses; zero where there is none.
     pub fn correction(&self) -> DVector<f64> {
         let mut all = Vec::new();
         for (&(index, place), state) in self.frames.iter().zip(&self.states) {
             let replica = &self.replicas[index];
-            for (row, observation) in self.observations(&replica.frames[place]).iter().enumerate() {
-                let value = state.correction.get(row).unwrap_or(&0.0);
-                all.push(value / (observation.spread * self.scale(replica)));
-            }
+            let observations = self.observations(&replica.frames[place]);
+            let value = |(row, observation): (usize, &Observation)| {
+                state.correction.get(row).unwrap_or(&0.0) / (observation.spread * self.scale(replica))
+            };
+            let values = observations.iter().enumerate().map(value);
+            let own = DMatrix::from_iterator(observations.len(), 1, values);
+            all.extend_from_slice(state.without_clips(own).as_slice());
         }
         DVector::from_vec(all)
     }
@@ -137,7 +143,11 @@ impl<'a> Equilibria<'a> {
         x: &mut [f64],
     ) -> Option<Vec<f64>> {
         let mut solver = Solver::new(replica.cloth(frame));
-        let found = solver.solve(curves, x, &self.task.settings);
+        let mut settings = self.task.settings;
+        if self.task.objective == Objective::Forces {
+            settings.tolerance = EXACT;
+        }
+        let found = solver.solve(curves, x, &settings);
         self.meter.add(&found);
         let clip_forces = solver.clip_forces();
         let stable = found.status == Status::Converged && !found.escaped;
@@ -182,7 +192,8 @@ impl<'a> Equilibria<'a> {
         let (finer, fine) = self.finer(replica, frame)?;
         let mut x = self.states[place].x.clone();
         let coarse = self.balanced(curves, replica, frame, &mut x)?;
-        let started = interpolated(replica, finer, fine, &x);
+        let mut started = interpolated(replica, finer, fine, &x);
+        finer.hold(fine, None, &self.states[place].clips, &mut started);
         // From the last finer shape, moved as the coarse one has moved since.
         let mut fine_x = match self.states[place].finer.as_deref() {
             Some([last, from]) => {

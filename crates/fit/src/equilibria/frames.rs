@@ -6,7 +6,7 @@ use super::state::{State, start_state};
 use super::task::Task;
 use super::unknowns::{Unknown, Unknowns};
 use crate::optimise::robust::Robust;
-use crate::twin::replica::{EdgePose, Replica, ReplicaFrame};
+use crate::twin::replica::{ClipPoses, EdgePose, Replica, ReplicaFrame};
 use cloth_sim::equilibrium::{Solver, Status};
 use cloth_sim::material::{Component, Curves};
 use rayon::prelude::*;
@@ -95,7 +95,9 @@ impl<'a> Equilibria<'a> {
             .frames
             .par_iter()
             .map(|&(replica, frame)| {
-                start_state(&replicas[replica], &replicas[replica].frames[frame], &curves)
+                let replica = &replicas[replica];
+                let clips = vec![0.0; simulation.clip_poses(replica).map_or(0, ClipPoses::unknowns)];
+                State { clips, ..start_state(replica, &replica.frames[frame], &curves) }
             })
             .collect();
         simulation
@@ -129,6 +131,13 @@ impl<'a> Equilibria<'a> {
     /// True if the noise of every sequence is known; residuals are then in units of it.
     pub fn noise_is_known(&self) -> bool {
         self.replicas.iter().all(|replica| self.noise(replica).is_some())
+    }
+
+    /// The errors of a replica's clip poses, where they are found with the curves: forces tell them, and how far is told by
+    /// the noise of both.
+    pub(super) fn clip_poses<'r>(&self, replica: &'r Replica) -> Option<&'r ClipPoses> {
+        let found = !self.task.exact_clips && self.task.objective == Objective::Forces;
+        replica.clip_poses.as_ref().filter(|_| found && self.noise_is_known())
     }
 
     /// Converts residuals to newtons or metres: their noise unit (the mean, if sequences differ), or 1.

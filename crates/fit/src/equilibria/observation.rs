@@ -105,15 +105,18 @@ pub(super) struct Balance<'a> {
     edge: Option<EdgePose>,
     /// Of every group of held nodes, N.
     clip_forces: &'a [Vector3<f64>],
-    /// dx/dk: one column of unknowns a control value; then dx/dθ of an edge's slope.
+    /// Number of control values.
+    values: usize,
+    /// dx/dk: one column of unknowns a control value; then dx/dθ of an edge's slope, or dx/dν of the clips' poses.
     sensitivity: &'a [f64],
-    /// dF/dk of every group of held nodes, a list a control value.
+    /// dF/dk of every group of held nodes, a list a control value; then dF/dν of the clips' poses.
     force_slopes: Vec<Vec<Vector3<f64>>>,
 }
 
 impl<'a> Balance<'a> {
-    /// * `columns` — ∂g/∂k, 3 a node, one a control value
-    /// * `sensitivity` — dx/dk, then dx/dθ of an edge's slope
+    /// * `values` — number of control values
+    /// * `columns` — ∂g/∂k, 3 a node, one a control value; then ∂g/∂ν of the clips' poses
+    /// * `sensitivity` — dx/dk; then dx/dθ of an edge's slope, or dx/dν of the clips' poses
     #[expect(clippy::too_many_arguments, reason = "the parts of a frame in equilibrium")]
     pub(super) fn new(
         solver: &Solver<'_>,
@@ -122,6 +125,7 @@ impl<'a> Balance<'a> {
         x: &'a [f64],
         edge: Option<EdgePose>,
         clip_forces: &'a [Vector3<f64>],
+        values: usize,
         columns: &[Vec<f64>],
         sensitivity: &'a [f64],
     ) -> Self {
@@ -137,12 +141,12 @@ impl<'a> Balance<'a> {
                 .collect()
         });
         let force_slopes = slopes.collect();
-        Self { cloth, frame, x, edge, clip_forces, sensitivity, force_slopes }
+        Self { cloth, frame, x, edge, clip_forces, values, sensitivity, force_slopes }
     }
 
     /// Number of the frame's own unknowns.
     pub(super) fn owned(&self) -> usize {
-        self.edge.map_or(0, |_| EdgePose::UNKNOWNS)
+        self.edge.map_or(self.force_slopes.len() - self.values, |_| EdgePose::UNKNOWNS)
     }
 }
 
@@ -162,7 +166,8 @@ impl Observation {
         match self.quantity {
             Quantity::Force { index, .. } => {
                 let force = &balance.frame.forces[index];
-                by_value.iter_mut().zip(&balance.force_slopes).for_each(|(d, slopes)| *d = force.of(slopes));
+                let derivatives = by_value.iter_mut().chain(own);
+                derivatives.zip(&balance.force_slopes).for_each(|(d, slopes)| *d = force.of(slopes));
             }
             Quantity::Coordinate { point, axis, merged } => {
                 let point = point_of(balance.frame, point, merged);

@@ -4,7 +4,7 @@ use super::frames::Equilibria;
 use super::observation::{Balance, Objective, Observation};
 use crate::optimise::gauss_newton::{Evaluation, Residuals};
 use crate::optimise::robust::Robust;
-use crate::optimise::uncertainty::{Covariance, NoiseSource, Scatter};
+use crate::optimise::uncertainty::{CONTRADICTED, Covariance, NoiseSource, Scatter};
 use crate::twin::replica::Replica;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::Status;
@@ -96,6 +96,21 @@ impl Equilibria<'_> {
         (rows, own)
     }
 
+    /// The same residuals as weighted ones, with the slopes of weighted least squares. On bent residuals Gauss–Newton steps
+    /// to a pose would be twice too long where all points are far off, and never end.
+    pub(super) fn weighted(&self, rows: &DMatrix<f64>, own: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (mut rows, mut own) = (rows.clone(), own.clone());
+        let Some(robust) = self.task.robust else { return (rows, own) };
+        for i in 0..rows.nrows() {
+            let share = robust.weighted(rows[(i, 0)]);
+            let values = rows.ncols() - 1;
+            rows.row_mut(i).columns_mut(1, values).scale_mut(share);
+            own.row_mut(i).scale_mut(share);
+            rows[(i, 0)] /= share;
+        }
+        (rows, own)
+    }
+
     /// Sum of squares, in the units of the residuals, that no cylinder off a table meets, and its degrees of freedom; `None`
     /// without merged points.
     fn repeats(&self) -> Option<(f64, usize)> {
@@ -112,17 +127,44 @@ impl Equilibria<'_> {
         (freedom > 0).then_some((squares, freedom))
     }
 
-    /// Noise and misfit of an evaluation.
+    /// Errors of all residuals by one standard deviation of each unknown of the clips' poses, beside what these poses
+    /// were found to be.
+    pub fn by_clip_poses(&self) -> Vec<DVector<f64>> {
+        let all = self.measurements();
+        let (mut first, mut errors) = (0, Vec::new());
+        for (settled, state) in self.settled().zip(&self.states) {
+            for column in state.without_clips(state.by_clips.clone()).column_iter() {
+                let mut error = DVector::zeros(all);
+                error.rows_mut(first, column.len()).copy_from(&column);
+                errors.push(error);
+            }
+            first += self.observations(settled.frame).len();
+        }
+        errors
+    }
+
+    /// Noise and misfit of an evaluation. A given noise stands unless the measurements contradict it: all that is left is far
+    /// below it, or points that no curve tells apart differ by far more.
     pub fn scatter(&self, residual: &DVector<f64>, jacobian: &DMatrix<f64>) -> Scatter {
-        let tracks = self.tracks();
-        let source = match (self.noise_is_known(), self.repeats()) {
-            (true, _) => NoiseSource::Declared(1.0),
-            (false, Some((squares, freedom))) => NoiseSource::Repeats { squares, freedom },
-            (false, None) => NoiseSource::Neighbours(&tracks),
-        };
         let rank = Covariance::rank_of(jacobian) + self.eliminated();
         let expected = self.task.robust.map_or(1.0, |robust| robust.mean_of_noise());
-        Scatter { expected, ..Scatter::new(residual, jacobian, rank, source) }
+        let by =
+            |source: NoiseSource<'_>| Scatter { expected, ..Scatter::new(residual, jacobian, rank, source) };
+        let repeats = self.repeats();
+        let estimated = || match repeats {
+            Some((squares, freedom)) => by(NoiseSource::Repeats { squares, freedom }),
+            None => by(NoiseSource::Neighbours(&self.tracks())),
+        };
+        if !self.noise_is_known() {
+            return estimated();
+        }
+        let given = by(NoiseSource::Declared(1.0));
+        let too_large = given.noise_is_overstated() && CONTRADICTED * given.residual < given.noise;
+        let far = |(squares, freedom): (f64, usize)| squares > CONTRADICTED.powi(2) * freedom as f64;
+        match too_large || repeats.is_some_and(far) {
+            true => Scatter { contradicted: Some(given.noise), ..estimated() },
+            false => given,
+        }
     }
 
     /// Number of the frames' own unknowns that their measurements determine.

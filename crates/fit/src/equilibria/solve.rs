@@ -1,11 +1,11 @@
 //! The equilibrium of one frame: start, fallbacks, and sensitivities from the factorisation.
 
-use super::elimination::{Eliminated, eliminate};
+use super::elimination::{Eliminated, Prior, eliminate};
 use super::frames::{Equilibria, SolverPool};
 use super::observation::{Balance, Objective, coordinates};
 use super::state::{FrameResult, State, measured_shape};
 use super::task::SolveStart;
-use crate::twin::replica::{EdgePose, Replica, ReplicaFrame};
+use crate::twin::replica::{Replica, ReplicaFrame};
 use cloth_sim::cloth::Cloth;
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::equilibrium::{Equilibrium, Solver, Status};
@@ -16,16 +16,20 @@ use rayon::prelude::*;
 /// Two equilibria of a frame are the same if no node differs by more than this share of a cell.
 const SAME_SHAPE: f64 = 0.01;
 
-/// The pose of an edge is found where a step removes less than this share of the residual, or after so many steps.
+/// The pose of an edge, or those of clips, are found where a step removes less than this share of the residual, or after so
+/// many steps.
 const FOUND: f64 = 1e-4;
 const MOST_POSES: usize = 12;
 
-/// Steps to the pose of an edge end where one removes more than this share of what the last one did: equilibria are not
+/// Steps to a pose end where one removes more than this share of what the last one did: equilibria are not
 /// exact.
 const SLOWEST: f64 = 0.5;
 
 /// Rounding of the pose, as a share of the residual of unit measurements.
 const ROUNDING: f64 = 1e-9;
+
+/// Change of a clip's force that no step to its pose is worth, as a share of the noise.
+const UNFELT: f64 = 1e-6;
 
 /// Share of an overhang, from the edge on, that places the edge where a shape is predicted.
 const NEAR_EDGE: f64 = 1.0 / 3.0;
@@ -71,7 +75,8 @@ impl<'a> Equilibria<'a> {
         result
     }
 
-    /// The equilibrium of a frame; off a table at the pose of the edge that meets its points best.
+    /// The equilibrium of a frame: off a table at the pose of the edge that meets its points best; between clips at their
+    /// likeliest poses.
     #[expect(clippy::too_many_arguments, reason = "one frame of solve_frames")]
     pub(super) fn solve_with(
         &self,
@@ -83,12 +88,16 @@ impl<'a> Equilibria<'a> {
         groups: &[Vec<Component>],
         change: Option<&DVector<f64>>,
     ) -> FrameResult {
-        let (x, edge) = match self.task.start {
-            SolveStart::LastEquilibrium => predicted(state, frame, replica.cloth(frame), change),
-            SolveStart::Measured => (measured_shape(replica, frame), frame.edge()),
+        let state = match self.task.start {
+            SolveStart::LastEquilibrium => predicted(state, replica, frame, change),
+            SolveStart::Measured => {
+                let mut x = measured_shape(replica, frame);
+                replica.hold(frame, None, &state.clips, &mut x);
+                State { x, edge: frame.edge(), ..state.clone() }
+            }
         };
         let mut result = FrameResult {
-            state: State { x, edge, sensitivity: Vec::new(), ..state.clone() },
+            state: State { sensitivity: Vec::new(), ..state },
             status: Status::NotFinite,
             forces: Vec::new(),
             rows: DMatrix::zeros(0, 0),
@@ -105,20 +114,9 @@ impl<'a> Equilibria<'a> {
             poses += 1;
             let least = if poses < MOST_POSES { last } else { 0.0 };
             let step = self.differentiate(solver, replica, frame, curves, groups, least, &mut result);
-            match (step, &frame.overhang, &mut result.state.edge) {
-                (Some((step, removed)), Some(overhang), Some(edge)) => {
-                    last = SLOWEST * removed;
-                    let turned = overhang.pose_after(edge, step.as_slice());
-                    let by_slope = &result.state.sensitivity
-                        [result.state.sensitivity.len() - replica.cloth(frame).unknowns()..];
-                    for &(coordinate, unknown) in replica.cloth(frame).free_coordinates() {
-                        result.state.x[coordinate] += by_slope[unknown] * (turned.slope - edge.slope);
-                    }
-                    *edge = turned;
-                    overhang.hold(edge.slope, &mut result.state.x);
-                }
-                _ => return result,
-            }
+            let Some((step, removed)) = step else { return result };
+            last = SLOWEST * removed;
+            take_own_step(replica, frame, &step, &mut result.state);
         }
     }
 
@@ -134,6 +132,7 @@ impl<'a> Equilibria<'a> {
         let cloth = replica.cloth(frame);
         let falls_back = self.task.start == SolveStart::LastEquilibrium;
         let settings = &self.task.settings;
+        let own_start = own_start(replica, frame, state);
         let x = &mut state.x;
         let mut found = solver.solve(curves, x, settings);
         self.meter.add(&found);
@@ -145,10 +144,7 @@ impl<'a> Equilibria<'a> {
         if (!found.converged() || crumpled(x)) && falls_back {
             // The measured shape or the prediction was too far off: restart from the replica's own start.
             self.meter.begins_anew();
-            match (&frame.overhang, &state.edge) {
-                (Some(overhang), Some(edge)) => x.copy_from_slice(&overhang.start(edge.slope)),
-                _ => x.copy_from_slice(&frame.start),
-            }
+            x.copy_from_slice(&own_start);
             found = solver.solve(curves, x, settings);
             self.meter.add(&found);
             escaped = found.escaped;
@@ -157,7 +153,7 @@ impl<'a> Equilibria<'a> {
             // Then in load steps, from the flat sheet.
             self.meter.takes_load_steps();
             x.copy_from_slice(&rest);
-            found = solver.load_steps(curves, x, &frame.start, settings);
+            found = solver.load_steps(curves, x, &own_start, settings);
             self.meter.add(&found);
             escaped = found.escaped;
         }
@@ -166,8 +162,8 @@ impl<'a> Equilibria<'a> {
     }
 
     /// Residuals, their derivatives with respect to the groups' curves, and dx/dk. Returns a step to the best pose of
-    /// the edge, and the residual that it removes, unless the pose is found; then the frame's own unknowns are
-    /// eliminated.
+    /// the edge, or to the likeliest ones of the clips, and the residual that it removes, unless these are found; then the
+    /// frame's own unknowns are eliminated.
     ///
     /// * `least` — a step that removes more does not get nearer
     #[expect(clippy::too_many_arguments, reason = "the parts of solve_with")]
@@ -185,10 +181,14 @@ impl<'a> Equilibria<'a> {
         let state = &mut result.state;
         let clip_forces = solver.clip_forces();
         result.forces = frame.forces.iter().map(|component| component.of(&clip_forces)).collect();
-        let columns = parameter_columns(cloth, curves, groups, &state.x);
+        let mut columns = parameter_columns(cloth, curves, groups, &state.x);
         let values = columns.len();
+        if let Some(poses) = self.clip_poses(replica) {
+            let moves = poses.moves(&frame.start);
+            columns.extend(moves.iter().map(|moved| cloth.stiffness_times(curves, &state.x, moved)));
+        }
         let unknowns = cloth.unknowns();
-        let mut sensitivity = vec![0.0; values * unknowns];
+        let mut sensitivity = vec![0.0; columns.len() * unknowns];
         for (column, slopes) in columns.iter().zip(sensitivity.chunks_exact_mut(unknowns.max(1))) {
             cloth.collect(column, slopes);
             slopes.iter_mut().for_each(|force| *force = -*force);
@@ -203,14 +203,36 @@ impl<'a> Equilibria<'a> {
             sensitivity.extend(response);
         }
         solver.solve_linear(&mut sensitivity);
+        let (x, edge) = (&state.x, state.edge);
         let balance =
-            Balance::new(solver, cloth, frame, &state.x, state.edge, &clip_forces, &columns, &sensitivity);
+            Balance::new(solver, cloth, frame, x, edge, &clip_forces, values, &columns, &sensitivity);
         let observations = self.observations(frame);
         result.simulated = observations.iter().map(|observation| observation.simulated(&balance)).collect();
-        let (rows, own) = self.rows(replica, &observations, &balance, values, &state.correction);
+        let (mut rows, own) = self.rows(replica, &observations, &balance, values, &state.correction);
         let Some(overhang) = &frame.overhang else {
-            result.rows = rows;
+            if own.ncols() > 0 {
+                // As if the poses were those measured.
+                let at = DVector::from_column_slice(&state.clips);
+                let eliminated = |mut rows: DMatrix<f64>, own: &DMatrix<f64>| {
+                    rows.set_column(0, &(rows.column(0) + own * &at));
+                    eliminate(rows, own, Prior::Unit)
+                };
+                let (way, by_own) = self.weighted(&rows, &own);
+                let found = eliminated(way, &by_own);
+                let step = &found.step - &at;
+                let removed = (by_own * &step).norm().hypot(step.norm());
+                let unfelt = UNFELT * (rows.nrows() as f64).sqrt();
+                if removed > FOUND * found.rows.column(0).norm() + unfelt && removed < least {
+                    state.sensitivity = sensitivity;
+                    return Some((step, removed));
+                }
+                let bent = self.task.robust.map(|_| eliminated(rows, &own));
+                let Eliminated { rows: left, by_value, .. } = bent.unwrap_or(found);
+                add_own(&mut sensitivity, values, unknowns, &by_value);
+                (state.own_sensitivity, state.by_clips, rows) = (by_value, own, left);
+            }
             state.sensitivity = sensitivity;
+            result.rows = rows;
             return None;
         };
         // A prediction may see no more of the shape than what places the edge.
@@ -223,24 +245,25 @@ impl<'a> Equilibria<'a> {
         };
         let measurements = near.as_ref().map_or(rows.nrows(), |(rows, _)| rows.nrows());
         let (of_pose, mut own) = near.unwrap_or_else(|| (rows.clone(), own));
-        let mut eliminated = eliminate(of_pose.clone(), &own);
-        if state.edge.is_some_and(|edge| overhang.is_pinned(&edge, eliminated.step.as_slice())) {
+        let way = |own: &DMatrix<f64>| {
+            let (rows, own) = self.weighted(&of_pose, own);
+            eliminate(rows, &own, Prior::Flat)
+        };
+        let mut found = way(&own);
+        if state.edge.is_some_and(|edge| overhang.is_pinned(&edge, found.step.as_slice())) {
             own.column_mut(4).fill(0.0);
-            eliminated = eliminate(of_pose, &own);
+            found = way(&own);
         }
-        let Eliminated { rows: left, step, by_value, rank, removed } = eliminated;
-        let size = left.column(0).norm();
+        let size = found.rows.column(0).norm();
         let rounding = ROUNDING * (measurements as f64).sqrt() * overhang.length / self.scale(replica);
-        if removed > FOUND * size + rounding && removed < least {
+        if found.removed > FOUND * size + rounding && found.removed < least {
             state.sensitivity = sensitivity;
-            return Some((step, removed));
+            return Some((found.step, found.removed));
         }
-        // dx/dk at the best pose.
-        let by_slope = sensitivity.split_off(values * unknowns);
-        for (column, slope) in sensitivity.chunks_exact_mut(unknowns.max(1)).zip(by_value.row(4).iter()) {
-            column.iter_mut().zip(&by_slope).for_each(|(dx, turn)| *dx += turn * slope);
-        }
-        state.edge_sensitivity = by_value;
+        let bent = self.task.robust.map(|_| eliminate(of_pose, &own, Prior::Flat));
+        let Eliminated { rows: left, by_value, rank, .. } = bent.unwrap_or(found);
+        add_own(&mut sensitivity, values, unknowns, &by_value.rows(4, 1).into_owned());
+        state.own_sensitivity = by_value;
         state.eliminated = rank;
         state.sensitivity = sensitivity;
         result.rows = if self.task.objective == Objective::Positions { left } else { rows };
@@ -293,29 +316,76 @@ impl<'a> Equilibria<'a> {
 }
 
 /// A state extrapolated by a change of the control values.
-fn predicted(
-    state: &State,
-    frame: &ReplicaFrame,
-    cloth: &Cloth,
-    change: Option<&DVector<f64>>,
-) -> (Vec<f64>, Option<EdgePose>) {
-    let (mut x, mut edge) = (state.x.clone(), state.edge);
+fn predicted(state: &State, replica: &Replica, frame: &ReplicaFrame, change: Option<&DVector<f64>>) -> State {
+    let mut next = state.clone();
+    let cloth = replica.cloth(frame);
     let unknowns = cloth.unknowns();
     let Some(change) = change.filter(|change| state.sensitivity.len() == change.len() * unknowns) else {
-        return (x, edge);
+        return next;
     };
-    for (column, step) in state.sensitivity.chunks_exact(unknowns.max(1)).zip(change.iter()) {
+    shift(cloth, &state.sensitivity, change.as_slice(), &mut next.x);
+    if state.own_sensitivity.ncols() == change.len() {
+        let step = &state.own_sensitivity * change;
+        match (&mut next.edge, &frame.overhang) {
+            (Some(edge), Some(overhang)) => *edge = overhang.pose_after(edge, step.as_slice()),
+            _ => next.clips.iter_mut().zip(step.iter()).for_each(|(error, step)| *error += step),
+        }
+        replica.hold(frame, next.edge.as_ref(), &next.clips, &mut next.x);
+    }
+    next
+}
+
+/// Moves the free coordinates by Σ change · dx.
+fn shift(cloth: &Cloth, columns: &[f64], changes: &[f64], x: &mut [f64]) {
+    for (column, change) in columns.chunks_exact(cloth.unknowns().max(1)).zip(changes) {
         for &(coordinate, unknown) in cloth.free_coordinates() {
-            x[coordinate] += column[unknown] * step;
+            x[coordinate] += column[unknown] * change;
         }
     }
-    if let (Some(edge), Some(overhang)) = (&mut edge, &frame.overhang)
-        && state.edge_sensitivity.ncols() == change.len()
-    {
-        *edge = overhang.pose_after(edge, (&state.edge_sensitivity * change).as_slice());
-        overhang.hold(edge.slope, &mut x);
+}
+
+/// Takes a step of the frame's own unknowns: the free nodes follow to first order.
+fn take_own_step(replica: &Replica, frame: &ReplicaFrame, step: &DVector<f64>, state: &mut State) {
+    let cloth = replica.cloth(frame);
+    let changes = match (&frame.overhang, &mut state.edge) {
+        (Some(overhang), Some(edge)) => {
+            let turned = overhang.pose_after(edge, step.as_slice());
+            let change = turned.slope - edge.slope;
+            *edge = turned;
+            vec![change]
+        }
+        _ => {
+            state.clips.iter_mut().zip(step.iter()).for_each(|(error, step)| *error += step);
+            step.as_slice().to_vec()
+        }
+    };
+    let first = state.sensitivity.len() - changes.len() * cloth.unknowns();
+    shift(cloth, &state.sensitivity[first..], &changes, &mut state.x);
+    replica.hold(frame, state.edge.as_ref(), &state.clips, &mut state.x);
+}
+
+/// dx/dk with the frame's own unknowns at their best, from dx/dk and dx/dν, which follows it and is dropped.
+///
+/// * `by_value` — dν/dk
+fn add_own(sensitivity: &mut Vec<f64>, values: usize, unknowns: usize, by_value: &DMatrix<f64>) {
+    let by_own = sensitivity.split_off(values * unknowns);
+    for (column, slopes) in sensitivity.chunks_exact_mut(unknowns.max(1)).zip(by_value.column_iter()) {
+        for (own, slope) in by_own.chunks_exact(unknowns.max(1)).zip(slopes.iter()) {
+            column.iter_mut().zip(own).for_each(|(dx, own)| *dx += own * slope);
+        }
     }
-    (x, edge)
+}
+
+/// Where a frame starts by itself, at the present pose of its edge or clips.
+fn own_start(replica: &Replica, frame: &ReplicaFrame, state: &State) -> Vec<f64> {
+    match (&frame.overhang, &state.edge) {
+        (Some(overhang), Some(edge)) => overhang.start(edge.slope),
+        _ => {
+            let mut x = frame.start.clone();
+            replica.hold(frame, None, &state.clips, &mut x);
+            x
+        }
+    }
 }
 
 /// ∂g/∂k for every control value of every group, N per unit of stiffness, 3 entries per node.

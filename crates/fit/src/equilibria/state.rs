@@ -1,5 +1,6 @@
 //! The equilibrium of one frame, and the start of its first solve.
 
+use super::elimination::{Prior, eliminate};
 use crate::twin::replica::{EdgePose, Replica, ReplicaFrame};
 use cloth_sim::equilibrium::Status;
 use cloth_sim::material::Curves;
@@ -17,8 +18,12 @@ pub(super) struct State {
     pub(super) escaped: bool,
     /// Pose of the sheet at a table's edge.
     pub(super) edge: Option<EdgePose>,
-    /// dν/dk of the pose: one column per control value.
-    pub(super) edge_sensitivity: DMatrix<f64>,
+    /// Errors of the clips' poses in standard deviations; empty if the poses are exact.
+    pub(super) clips: Vec<f64>,
+    /// Derivative of the simulated values by these, in units of the noise.
+    pub(super) by_clips: DMatrix<f64>,
+    /// dν/dk of the frame's own unknowns: one column per control value.
+    pub(super) own_sensitivity: DMatrix<f64>,
     /// Number of the frame's own unknowns that its measurements determine.
     pub(super) eliminated: usize,
     /// Error of the grid, added to the simulated values: as many as observations, or none. Renewed by
@@ -26,6 +31,16 @@ pub(super) struct State {
     pub(super) correction: Arc<Vec<f64>>,
     /// The equilibrium on the finer grid, and what of it was interpolated, where it was corrected by one.
     pub(super) finer: Option<Arc<[Vec<f64>; 2]>>,
+}
+
+impl State {
+    /// Rows of residuals, or of what changes them, without the errors of the clips' poses.
+    pub(super) fn without_clips(&self, rows: DMatrix<f64>) -> DMatrix<f64> {
+        match self.by_clips.ncols() {
+            0 => rows,
+            _ => eliminate(rows, &self.by_clips, Prior::Unit).rows,
+        }
+    }
 }
 
 /// A frame's share of an evaluation.

@@ -29,6 +29,8 @@ pub struct Task {
     pub settings: Settings,
     /// Start of the equilibria.
     pub start: SolveStart,
+    /// Clips are where they were measured; else their poses err by their noise and are found with the curves.
+    pub exact_clips: bool,
     /// Limit above which residuals get less weight.
     pub robust: Option<Robust>,
 }

@@ -72,14 +72,15 @@ pub fn predict(
         known: completed(curves, &unknown, assumed, &replicas, settings)?,
         settings: settings.equilibrium,
         start: SolveStart::LastEquilibrium,
+        exact_clips: true,
         robust: None,
     };
     // Curves are those of the continuum, so a prediction is corrected for its grid, too.
-    let corrected = settings.corrected && !settings.model.is_of_springs();
     let finer = |(sequence, parts): &(&Sequence, Parts)| {
         Replica::new(sequence, &Parts { refinement: 2, ..parts.clone() })
     };
-    let between_clips = sequences.iter().filter(|(sequence, _)| corrected && !sequence.clips.is_empty());
+    let between_clips =
+        sequences.iter().filter(|(sequence, _)| settings.corrects() && !sequence.clips.is_empty());
     let finer: Vec<Replica> = between_clips.map(finer).collect::<Result<_>>()?;
     let mut simulation =
         Equilibria::unsettled(&replicas, task, Unknowns::default(), Arc::clone(&watch.meter))

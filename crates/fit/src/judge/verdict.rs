@@ -106,6 +106,14 @@ pub fn of_stage(stage: &StageReport, notices: &[Notice]) -> Verdict {
         let found = format!("{:.0} % of its frames have no equilibrium", 100.0 * dropped);
         reasons.push((Grade::Amber, found));
     }
+    if let Some(given) = stage.scatter.contradicted {
+        let ratio = stage.scatter.noise / given;
+        let found = format!(
+            "the measurements scatter {ratio:.2} times as much as the given noise: the band follows the \
+             measurements; check noise in test.toml"
+        );
+        reasons.push((Grade::Amber, found));
+    }
     if stage.scatter.noise_is_overstated() {
         let found = "the residual is below the given noise, which may be too large";
         reasons.push((Grade::Amber, found.into()));

@@ -33,6 +33,13 @@ impl Robust {
         (2.0 / (root * (root + 1.0))).sqrt()
     }
 
+    /// dr/dr̃ √w for a transformed residual r̃, w = ρ′/2r: a row of the Jacobian times this, with its residual over this, is
+    /// √w times the plain one. Such steps (iteratively reweighted least squares) never raise Σ ρ.
+    pub fn weighted(&self, bent: f64) -> f64 {
+        let root = 1.0 + 0.5 * (bent / self.limit).powi(2);
+        (2.0 * root / (root + 1.0)).sqrt()
+    }
+
     /// Mean of ρ over noise of standard deviation 1, by the trapezoidal rule: the remaining mean square.
     pub fn mean_of_noise(&self) -> f64 {
         let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
@@ -70,6 +77,18 @@ mod tests {
             let h = 1e-6;
             let slope = (robust.bend(residual + h).0 - robust.bend(residual - h).0) / (2.0 * h);
             assert!((slope - robust.bend(residual).1).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn weighted_rows_are_those_of_the_plain_residual() {
+        let robust = Robust { limit: 2.0 };
+        for residual in [-7.0f64, -1.0, 0.3, 2.0, 40.0] {
+            let weight = 1.0 / (1.0 + (residual / 2.0).powi(2)).sqrt();
+            let (bent, slope) = robust.bend(residual);
+            let share = robust.weighted(bent);
+            assert!((bent / share - weight.sqrt() * residual).abs() < 1e-12);
+            assert!((slope * share - weight.sqrt()).abs() < 1e-12);
         }
     }
 

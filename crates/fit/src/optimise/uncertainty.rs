@@ -39,7 +39,13 @@ pub struct Scatter {
     pub freedom: usize,
     /// Mean square of noise alone, over σ²: 1, or less if large residuals have less weight.
     pub expected: f64,
+    /// A given noise that the residuals contradict; what is estimated stands in its place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contradicted: Option<f64>,
 }
+
+/// A given noise is contradicted by so many times as much, or as little.
+pub const CONTRADICTED: f64 = 3.0;
 
 /// Source of the noise of a fit's measurements.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,6 +109,7 @@ impl Scatter {
             measurements,
             freedom,
             expected: 1.0,
+            contradicted: None,
         }
     }
 }
@@ -133,7 +140,13 @@ impl Scatter {
 
     /// Converts to other units.
     pub fn times(self, unit: f64) -> Self {
-        Self { noise: self.noise * unit, residual: self.residual * unit, misfit: self.misfit * unit, ..self }
+        Self {
+            noise: self.noise * unit,
+            residual: self.residual * unit,
+            misfit: self.misfit * unit,
+            contradicted: self.contradicted.map(|given| given * unit),
+            ..self
+        }
     }
 }
 
@@ -188,6 +201,8 @@ fn student_975(freedom: f64) -> f64 {
 pub enum Source {
     /// Noise of the measurements, and what they do not tell of the curve's course.
     Noise,
+    /// Errors of the clips' poses.
+    ClipPoses,
     /// What no curve meets: hysteresis, or a law that the model cannot follow.
     Misfit,
     /// What the correction for the grid may leave.
@@ -204,6 +219,7 @@ impl std::fmt::Display for Source {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(match self {
             Self::Noise => "noise",
+            Self::ClipPoses => "clip poses",
             Self::Misfit => "misfit",
             Self::Grid => "grid",
             Self::Curve => "control points",
@@ -302,6 +318,15 @@ impl Covariance {
     /// Adds an error along a known direction, within ± 1 times it in 95 of 100 cases.
     pub fn widen(&mut self, source: Source, direction: &DVector<f64>) {
         self.add(source, direction * direction.transpose() / Z_975.powi(2));
+    }
+
+    /// Takes a part of the noise's covariance for another source.
+    pub(crate) fn attribute(&mut self, source: Source, part: DMatrix<f64>) {
+        self.matrix -= &part;
+        if let Some(noise) = self.parts.get_mut(&Source::Noise) {
+            *noise -= &part;
+        }
+        self.add(source, part);
     }
 
     fn add(&mut self, source: Source, summand: DMatrix<f64>) {
@@ -468,6 +493,7 @@ mod tests {
             measurements: 3,
             freedom: 1,
             expected: 1.0,
+            contradicted: None,
         };
         let covariance = Covariance::new(&jacobian, &scatter);
         assert_eq!((covariance.rank, Covariance::rank_of(&jacobian)), (2, 2));

@@ -8,7 +8,7 @@ use crate::optimise::gauss_newton::{Evaluation, LinearConstraints, Outcome, Resi
 use crate::optimise::uncertainty::{Covariance, Scatter};
 use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::error::Result;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// If doubling the stiffness changes less than this share of the residual, more points would be undetermined, as for
 /// ring-2 springs that depend on softer yarns.
@@ -23,8 +23,8 @@ const MEAN_FOUND: f64 = 0.05;
 const CLOSE: f64 = 0.5;
 const MOST_MEANS: usize = 8;
 
-/// On the way to the mean positions are corrected for the grid at every step, forces where the curve moves by more than
-/// this share.
+/// On the way to the mean positions are corrected for the grid at every step; forces, which the grid hardly changes, once
+/// the curve moves by less than this share, and again if it has moved by more since.
 const CORRECTED_AGAIN: f64 = 0.05;
 
 /// Increase of ‖r/σ‖² that makes a step to the mean too long.
@@ -88,16 +88,20 @@ pub(super) fn average(
     let unknowns = resampled(simulation, start, points)?;
     let domain = domain_of(&unknowns, settings, lowest_tangents)?;
     simulation.set_unknowns(unknowns.clone());
-    simulation.correct();
+    let at_every_step = simulation.task().objective == Objective::Positions;
+    if at_every_step {
+        simulation.correct();
+    }
     let mut point = unknowns.values();
+    let mut corrected_at: Option<DVector<f64>> = None;
     let mut found: Option<Mean> = None;
     let mut close = false;
+    let mut most: Option<f64> = None;
     for _ in 0..MOST_MEANS {
         let values = match simulation.evaluate(&point, true) {
             Ok(Evaluation::Values { residual, jacobian: Some(jacobian) }) => Some((residual, jacobian)),
             _ => None,
         };
-        let most = found.as_ref().map(|last| last.outcome.sum_of_squares + WORSE * last.noise.powi(2));
         let near = values.filter(|(residual, _)| most.is_none_or(|most| residual.norm_squared() <= most));
         let Some((residual, jacobian)) = near else {
             // Too far for the linear model: half the way.
@@ -125,15 +129,22 @@ pub(super) fn average(
         close = within(CLOSE);
         let settled = within(MEAN_FOUND);
         let outcome = Outcome::at(point.clone(), residual, jacobian, Status::MeanFound, Vec::new());
+        most = Some(outcome.sum_of_squares + WORSE * noise.powi(2));
         found = Some(Mean { outcome, posterior, noise });
-        if settled {
+        let moved = |at: &DVector<f64>| (&next - at).amax() / next.amax();
+        let once = simulation.is_corrected() && !at_every_step;
+        let stale = once && corrected_at.as_ref().is_none_or(|at| moved(at) > CORRECTED_AGAIN);
+        if settled && !stale {
             break;
         }
-        let moved = (&next - &point).amax() / point.amax();
+        let step = moved(&point);
         point = next;
         simulation.set_unknowns(unknowns.with_values(&point)?);
-        if moved > CORRECTED_AGAIN || simulation.task().objective == Objective::Positions {
+        if at_every_step || stale && step <= CORRECTED_AGAIN {
             simulation.correct();
+            corrected_at = Some(point.clone());
+            // Another objective.
+            most = None;
         }
     }
     let Some(Mean { outcome, posterior, noise }) = found.filter(|_| close) else { return Ok(None) };

@@ -48,9 +48,7 @@ pub fn fit(
     let constant = StiffnessCurve::constant(stiffness, negative).map_err(mechanics(plan))?;
     let first = before.clone().unwrap_or(constant);
     let unknowns = Unknowns::one(&plan.fitted, first);
-    // Springs stand for their own grid.
-    let corrected = settings.corrected && !settings.model.is_of_springs();
-    let finer_replicas = if corrected { plan.refined(set, settings, 2)? } else { Vec::new() };
+    let finer_replicas = if settings.corrects() { plan.refined(set, settings, 2)? } else { Vec::new() };
     let simulation = simulate(plan, &replicas, known, unknowns, settings, watch)?;
     let mut simulation = simulation.corrected_by(&finer_replicas);
     let dropped = simulation.dropped().len();
@@ -152,6 +150,7 @@ fn simulate<'r>(
         known,
         settings: settings.equilibrium,
         start: settings.solve_start,
+        exact_clips: settings.exact_clips,
         robust: None,
     };
     let simulation = Equilibria::new(replicas, task, unknowns, Arc::clone(&watch.meter));
@@ -208,6 +207,14 @@ fn judge(
         }
         None => Covariance::new(jacobian, &scatter),
     };
+    if complete {
+        let errors = simulation.by_clip_poses();
+        let changes = errors.iter().map(|error| covariance.change(jacobian, error));
+        let of_clips = changes.map(|change| &change * change.transpose());
+        if let Some(of_clips) = of_clips.reduce(|sum, next| sum + next) {
+            covariance.attribute(Source::ClipPoses, of_clips);
+        }
+    }
     if simulation.is_corrected() && complete {
         let left = match plan.objective {
             Objective::Positions => LEFT_OFF_A_TABLE,

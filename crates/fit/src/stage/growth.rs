@@ -150,6 +150,9 @@ pub fn refit(
     let before = simulation.unknowns().clone();
     let points = points_of(&before);
     let stopped = format!("all {points} control points of the previous pass are fitted again");
+    if let Some(limit) = settings.robust {
+        simulation.make_robust(limit);
+    }
     if let Some(averaged) = average(simulation, &before, settings, lowest_tangents)? {
         return Ok(Growth::of(averaged, Vec::new(), stopped));
     }

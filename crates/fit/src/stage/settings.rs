@@ -116,6 +116,9 @@ pub struct Settings {
     /// Correction for the grid's error, so that curves are those of the continuum; default true. Published: false, curves
     /// for one grid. Never of springs, which stand for their own grid.
     pub corrected: bool,
+    /// Clips are exactly where they were measured; default false: they err by their noise, where it is known. Published:
+    /// true.
+    pub exact_clips: bool,
     /// Criterion for more control points; default a decrease of the root mean square residual by 1 %. Published: its
     /// square.
     pub growth: GrowthRule,
@@ -147,6 +150,7 @@ impl Default for Settings {
             first_stiffness: FirstStiffness::FromMeasurements,
             table: TableHold::default(),
             corrected: true,
+            exact_clips: false,
             growth: GrowthRule::default(),
             averaged: true,
             robust: None,
@@ -168,6 +172,11 @@ impl Settings {
         if self.variant.is_linear() { 1 } else { self.points }
     }
 
+    /// True if simulated values are corrected for the grid.
+    pub(crate) fn corrects(&self) -> bool {
+        self.corrected && !self.model.is_of_springs()
+    }
+
     /// The published method, with the same model, variant, grid and compression. Each of these settings can also be
     /// changed separately.
     ///
@@ -186,6 +195,7 @@ impl Settings {
             first_stiffness: FirstStiffness::Constant,
             table: TableHold::AsSeen,
             corrected: false,
+            exact_clips: true,
             growth: GrowthRule::PUBLISHED,
             averaged: false,
             robust: None,

@@ -5,6 +5,7 @@
 
 mod as_seen;
 mod blend;
+mod clip_poses;
 mod clips;
 mod edge_pose;
 mod force_component;
@@ -34,6 +35,7 @@ use nalgebra::{Vector2, Vector3};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
+pub use clip_poses::ClipPoses;
 pub use edge_pose::EdgePose;
 pub use force_component::ForceComponent;
 pub use merging::Merging;
@@ -64,7 +66,7 @@ pub struct Replica {
     /// The cloths: one between clips, one for every frame off a table.
     pub cloths: Vec<Cloth>,
     /// For each group of held nodes, a weight per node: 1 at its own nodes, 0 at the others', harmonic in between. It
-    /// is the virtual displacement in which that group alone does work. Empty on a table.
+    /// is the virtual displacement in which that group alone does work. Empty on a table, and on a finer grid.
     pub fields: Vec<Vec<f64>>,
     /// The used frames.
     pub frames: Vec<ReplicaFrame>,
@@ -74,6 +76,8 @@ pub struct Replica {
     pub vertices_left_out: usize,
     /// True if nodes move in the plane only: two unknowns per node.
     pub planar: bool,
+    /// Errors of the clips' poses; `None` if these are exact.
+    pub clip_poses: Option<ClipPoses>,
     /// Standard deviation of a force component, N, if known.
     pub force_noise: Option<f64>,
     /// Standard deviation of a vertex coordinate, m, if known.
@@ -172,6 +176,7 @@ impl Replica {
             skipped: Vec::new(),
             vertices_left_out: 0,
             planar: false,
+            clip_poses: None,
             areal_density: parts.areal_density,
             weight: gravity * parts.areal_density,
             force_noise: noise.and_then(|noise| noise.force_n),
@@ -230,6 +235,17 @@ impl Replica {
         self.mesh(frame).coordinates()
     }
 
+    /// Puts the held nodes of a state in place.
+    ///
+    /// * `clips` — errors of the clips' poses, in standard deviations; empty if exact
+    pub fn hold(&self, frame: &ReplicaFrame, edge: Option<&EdgePose>, clips: &[f64], x: &mut [f64]) {
+        match (&frame.overhang, edge, &self.clip_poses) {
+            (Some(overhang), Some(edge), _) => overhang.hold(edge.slope, x),
+            (_, _, Some(poses)) if !clips.is_empty() => poses.hold(&frame.start, clips, x),
+            _ => (),
+        }
+    }
+
     /// A simulated state on the grid of the whole sheet, in the specimen's axes: 3 stacked coordinates per node, m.
     ///
     /// * `edge` — pose of the sheet at the edge, off a table
@@ -266,12 +282,18 @@ impl Replica {
     ) -> Result<()> {
         let specimen = &self.specimen;
         let grip = Grip::new(sequence, specimen)?;
-        let blend = Blend::new(&specimen.mesh, grip.group_of.iter().map(Option::is_some).collect());
-        let mut starts: Vec<Vec<f64>> = sequence
-            .frames
-            .par_iter()
-            .map(|frame| blend.shape(&specimen.mesh, |node| grip.place(specimen, frame, node)))
-            .collect();
+        // On a finer grid the free nodes start from the coarser equilibrium.
+        let blend = (parts.refinement == 1)
+            .then(|| Blend::new(&specimen.mesh, grip.group_of.iter().map(Option::is_some).collect()));
+        let start = |frame| -> Vec<f64> {
+            let place = |node| grip.place(specimen, frame, node);
+            match &blend {
+                Some(blend) => blend.shape(&specimen.mesh, place),
+                None => (0..specimen.mesh.len()).flat_map(|node| place(node).data.0[0]).collect(),
+            }
+        };
+        let mut starts: Vec<Vec<f64>> = sequence.frames.par_iter().map(start).collect();
+        let clip_noise = sequence.clip_noise();
         let bends = parts.components.iter().any(|component| component.is_bending());
         // A sheared sheet of unobserved shape may have buckled.
         let leaves_plane = |shape: &Option<Vec<f64>>| match flatness(shape.as_ref(), self.position_noise) {
@@ -280,11 +302,12 @@ impl Replica {
         };
         self.planar = parts.flat
             || gravity.z.abs() <= FLAT_SLOPE * gravity.norm()
-                && starts.iter().all(|x| is_planar(x, &grip.group_of, specimen))
+                && starts.iter().all(|x| is_planar(x, &grip.group_of, specimen, clip_noise))
                 && !(bends && shapes.iter().any(leaves_plane));
         if parts.flat {
             starts.iter_mut().for_each(|x| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 0.0));
         }
+        self.clip_poses = ClipPoses::new(&grip, &specimen.mesh, clip_noise, self.planar);
         let held = grip
             .group_of
             .iter()
@@ -299,14 +322,14 @@ impl Replica {
             &[],
             self.planar,
         )?);
-        self.fields = (0..grip.groups.len())
-            .map(|group| {
-                let own = |holder: &Option<usize>| if *holder == Some(group) { 1.0 } else { 0.0 };
-                let mut field: Vec<f64> = grip.group_of.iter().map(own).collect();
-                blend.extend(&mut field);
-                field
-            })
-            .collect();
+        let field = |blend: &Blend, group: usize| {
+            let own = |holder: &Option<usize>| if *holder == Some(group) { 1.0 } else { 0.0 };
+            let mut field: Vec<f64> = grip.group_of.iter().map(own).collect();
+            blend.extend(&mut field);
+            field
+        };
+        let fields = |blend: &Blend| (0..grip.groups.len()).map(|group| field(blend, group)).collect();
+        self.fields = blend.as_ref().map_or(Vec::new(), fields);
         let extensions: Vec<f64> =
             starts.iter().map(|x| grip.extension(sequence.kind, specimen, x)).collect();
         let largest = extensions.iter().fold(0.0f64, |m, &e| m.max(e));
@@ -485,12 +508,16 @@ fn check_cells(sequence: &Sequence, specimen: &Specimen, model: Model) -> Result
     ))
 }
 
-/// True if the clips' nodes leave their common plane z = const so little that flattening hardly changes any strain.
-fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen) -> bool {
+/// Heights of clips in one plane differ by up to this multiple of their noise.
+const CHANCE: f64 = 6.0;
+
+/// True if the clips' nodes leave their common plane z = const so little that flattening hardly changes any strain, or no
+/// more than the noise of their poses may make them.
+fn is_planar(x: &[f64], group_of: &[Option<usize>], specimen: &Specimen, noise: f64) -> bool {
     let heights = (0..group_of.len()).filter(|&node| group_of[node].is_some()).map(|node| x[3 * node + 2]);
     let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
     let side = specimen.grid.width.min(specimen.grid.height);
-    high - low <= FLAT_SLOPE * side
+    high - low <= f64::max(FLAT_SLOPE * side, CHANCE * noise)
 }
 
 /// True if an observed shape stays in its plane within noise; `None` if less than half of it was observed, no height

@@ -36,6 +36,8 @@ pub(super) struct Pull {
     pub(super) weight: f64,
     /// Standard deviation of a force, N: declared, otherwise estimated.
     pub(super) noise: f64,
+    /// Standard deviation of the difference of two separations, m: of two clips in two frames.
+    pub(super) step_noise: f64,
     /// Shapes were measured, which include the rest state.
     pub(super) has_shapes: bool,
     /// The first load cycle.
@@ -95,6 +97,7 @@ impl Pull {
             width: sides[1] - sides[0],
             weight: (first.mass_kg + second.mass_kg) * sequence.gravity.dot(&axis).abs(),
             noise: declared.unwrap_or_else(|| noise(&readings)),
+            step_noise: 2.0 * sequence.clip_noise(),
             has_shapes: sequence.frames.iter().any(|frame| frame.positions.is_some()),
             cycle: sequence.frames.iter().find_map(|frame| frame.cycle).unwrap_or(0),
             readings,

@@ -29,7 +29,8 @@ pub(super) fn check(pull: &Pull) -> Vec<Notice> {
     }
     let steps = pull.readings.windows(2).map(|two| (two[1].separation - two[0].separation).abs());
     let usual = median(steps.filter(|step| *step > 0.0).collect()).unwrap_or(0.0);
-    let (still, going) = (STILL * usual, GOING * usual);
+    let moves = |share: f64| f64::max(share * usual, NOISE * pull.step_noise);
+    let (still, going) = (moves(STILL), moves(GOING));
     let rises = pull.readings.windows(2).map(|two| (two[1].force - two[0].force).abs());
     let rise = median(rises.collect()).unwrap_or(0.0);
     // A branch may be rougher than most, for example the first pull of a new strip.

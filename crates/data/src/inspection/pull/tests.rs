@@ -179,7 +179,7 @@ fn noise_is_estimated_whatever_the_curve_and_its_spikes() {
         assert!(estimated(&spiked) < 1.6 * NOISE_N);
     }
     let mut declared = sequence(&loading(|s| law(s, GAUGE)));
-    declared.noise = Some(Noise { position_m: None, force_n: Some(0.3) });
+    declared.noise = Some(Noise { position_m: None, force_n: Some(0.3), clip_m: None });
     assert_eq!(Pull::of(&declared, "", &[0; 400]).unwrap().noise, 0.3);
 }
 

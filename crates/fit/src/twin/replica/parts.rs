@@ -16,7 +16,7 @@ pub struct Parts {
     pub nodes: Option<[usize; 2]>,
     /// Split of the cells.
     pub diagonals: Diagonals,
-    /// Multiple of the cells along an overhang.
+    /// Multiple of the cells; above 1, of a grid that corrects another.
     pub refinement: usize,
     /// Constraint at a table.
     pub table: TableHold,
