@@ -140,6 +140,69 @@ fn weight_across_the_sheet_makes_it_sag_and_is_borne() {
     );
 }
 
+/// Knit pulled upwards between bars of 10.1 g, as published clips. Only the upper bar has a load cell, which carries that
+/// bar too. The cloth weighs nothing, like the rig's.
+#[test]
+fn the_mass_of_a_clip_is_told_from_the_pull_of_the_cloth() {
+    let knit = KnownFabric::named("rayon-spandex-knit").unwrap();
+    let mut set = rig().measure(&knit).unwrap();
+    set.fabric.areal_density_kg_m2 = 0.0;
+    for sequence in &mut set.sequences {
+        sequence.gravity = Vector3::new(-9.81, 0.0, 0.0);
+        for frame in &mut sequence.frames {
+            frame.cords.retain(|cord| cord.clip == 1);
+            frame.cords.iter_mut().for_each(|cord| cord.force.x += 9.81 * 0.0101);
+        }
+    }
+    let curves = knit.curves().unwrap();
+    let truth = curves.get(Component::StretchWeft).unwrap();
+    let [told, untold] = [0.0101, 0.0].map(|mass| {
+        let clips = set.sequences.iter_mut().flat_map(|sequence| &mut sequence.clips);
+        clips.for_each(|clip| clip.mass_kg = mass);
+        stress_error(&fit_weft(&set, Model::Stvk).curve.samples, &|strain| truth.stress(strain))
+    });
+    println!("stress within {:.2} %, without the mass {:.2} %", 100.0 * told, 100.0 * untold);
+    assert!(told < 0.01 && untold > 0.03);
+}
+
+#[test]
+fn three_load_cycles_tell_what_one_tells() {
+    let sequences = vec![Kind::StretchWeft];
+    let [one, three] = [1, 3].map(|cycles| {
+        let rig = Rig { sequences: sequences.clone(), fabric_hysteresis: true, cycles, frames: 6, ..rig() };
+        measure(&rig)
+    });
+    let [first, all] = [&one, &three].map(|set| &set.sequences[0].frames);
+    assert_eq!((first.len(), all.len(), &all[..13]), (13, 37, &first[..]));
+    for (index, frame) in all.iter().enumerate().skip(1) {
+        let (cycle, same) = ((index - 1) / 12, &first[1 + (index - 1) % 12]);
+        assert_eq!(
+            (frame.cycle, frame.phase, frame.time),
+            (Some(cycle), same.phase, Some(2.0 * index as f64))
+        );
+        assert_eq!(frame.poses, same.poses);
+    }
+    let [first, all] = [&one, &three].map(|set| fit_weft(set, Model::Stvk).curve);
+    let apart = first.samples.iter().zip(&all.samples).map(|(one, three)| {
+        let [low, high] = one.band.unwrap();
+        assert!(low <= three.stress && three.stress <= high, "{one:?} {three:?}");
+        (one.stress - three.stress).abs() / first.largest_stress()
+    });
+    let apart = apart.fold(0.0, f64::max);
+    println!("one and three cycles: apart by {:.3} % of the largest stress", 100.0 * apart);
+    assert!(apart < 1e-3);
+    // It belongs to one branch only.
+    let top = &one.sequences[0].frames[6].poses;
+    for cycle in 0..3 {
+        let mut set = three.clone();
+        set.sequences[0].frames.retain(|frame| frame.cycle == Some(cycle) && frame.poses != *top);
+        let hysteresis = fit_weft(&set, Model::Stvk).sequences[0].hysteresis.unwrap();
+        let ratio = hysteresis.loading / hysteresis.unloading;
+        println!("cycle {cycle}: loading {ratio:.3} of unloading");
+        assert!((ratio / denim().loading_ratio - 1.0).abs() < 0.01);
+    }
+}
+
 #[test]
 fn a_specimen_anywhere_in_space_fits_alike() {
     let set = measure(&rig());

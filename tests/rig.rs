@@ -1,10 +1,10 @@
 //! The virtual rig: its fabrics have their documented properties, and its measurements their declared accuracy.
 
-use cloth_data::frame::{Frame, Kind, MeasurementSet, Phase, Sequence};
+use cloth_data::frame::{Frame, Kind, MeasurementSet, Noise, Phase, Sequence};
 use cloth_data::rig::{KINDS, KnownFabric, Rig};
 use cloth_sim::curve::stability_rows;
 use cloth_sim::mesh::Diagonals;
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DVector, Isometry3, Point3, Vector3};
 use std::path::Path;
 
 const GRAVITY: f64 = 9.81;
@@ -134,6 +134,8 @@ fn clips_cloth_and_cords_are_in_balance() {
     let set = measure(&rig(&[Kind::Shear, Kind::ComplexShear, Kind::CornerPull]));
     let sheet = set.fabric.areal_density_kg_m2 * set.fabric.width_m * set.fabric.height_m;
     for sequence in &set.sequences {
+        let mass = if sequence.kind == Kind::CornerPull { 0.0019 } else { 0.0133 };
+        assert!(sequence.clips.iter().all(|clip| clip.mass_kg == mass), "{}", sequence.name);
         let clips: f64 = sequence.clips.iter().map(|clip| clip.mass_kg).sum();
         let weight = sequence.gravity * (clips + sheet);
         assert!(weight.z < 0.0);
@@ -226,6 +228,65 @@ fn a_sequence_depends_on_the_seed_alone() {
     assert!(
         shear.frames.iter().all(|frame| (frame.poses[0] * corner - frame.poses[2] * corner).norm() < 1e-12)
     );
+}
+
+/// 0.075 mm in every coordinate of a vertex and of a bar's centre, 0.075 mm by its length in its turn, 3 mN in every
+/// component of a force (Miguel et al. 2012, §3).
+#[test]
+fn noise_is_normal_and_of_the_published_size() {
+    let of = |noise, clip_noise| {
+        let mut set = measure(&Rig { noise, clip_noise, frames: 60, ..rig(&[Kind::StretchWeft]) });
+        set.sequences.remove(0)
+    };
+    let [exact, noisy, shaken] = [of(false, false), of(true, false), of(true, true)];
+    let declared =
+        |clip_m| Some(Noise { position_m: Some(7.5e-5), force_n: Some(3e-3), clip_m: Some(clip_m) });
+    assert_eq!([exact.noise, noisy.noise, shaken.noise], [None, declared(0.0), declared(7.5e-5)]);
+    let places = |seen: &Sequence| -> Vec<Vector3<f64>> {
+        seen.frames.iter().flat_map(|frame| frame.positions.clone().unwrap()).collect()
+    };
+    let poses = |seen: &Sequence| -> Vec<Isometry3<f64>> {
+        seen.frames.iter().flat_map(|frame| frame.poses.clone()).collect()
+    };
+    // Bars of 100 mm at x = 0 and x = 100 mm.
+    let centres = |seen: &Sequence| -> Vec<Vector3<f64>> {
+        let centre = |bar: usize| Point3::new(0.1 * bar as f64, 0.05, 0.0);
+        poses(seen).iter().enumerate().map(|(index, pose)| (pose * centre(index % 2)).coords).collect()
+    };
+    let turns = |seen: &Sequence| -> Vec<Vector3<f64>> {
+        poses(seen).iter().map(|pose| 0.1 * pose.rotation.scaled_axis()).collect()
+    };
+    assert_eq!(poses(&noisy), poses(&exact));
+    assert_normal("vertices", &places(&noisy), &places(&exact), 7.5e-5);
+    assert_normal("forces", &forces(&noisy), &forces(&exact), 3e-3);
+    assert_normal("centres of bars", &centres(&shaken), &centres(&exact), 7.5e-5);
+    assert_normal("turns of bars", &turns(&shaken), &turns(&exact), 7.5e-5);
+}
+
+/// Errors of zero mean and this deviation, normal and independent, within four standard errors.
+fn assert_normal(of: &str, seen: &[Vector3<f64>], exact: &[Vector3<f64>], deviation: f64) {
+    assert_eq!(seen.len(), exact.len());
+    let count = seen.len() as f64;
+    let along = |axis: usize| -> Vec<f64> {
+        seen.iter().zip(exact).map(|(seen, exact)| (seen[axis] - exact[axis]) / deviation).collect()
+    };
+    for axis in 0..3 {
+        let [errors, others] = [axis, (axis + 1) % 3].map(along);
+        let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / count;
+        let within = |most: f64| mean(&|i| f64::from(errors[i].abs() < most));
+        for (what, found, expected, scatter) in [
+            ("mean", mean(&|i| errors[i]), 0.0, 1.0),
+            ("variance", mean(&|i| errors[i].powi(2)), 1.0, 2f64.sqrt()),
+            ("within σ", within(1.0), 0.6827, 0.4654),
+            ("within 2σ", within(2.0), 0.9545, 0.2084),
+            ("times that on the next axis", mean(&|i| errors[i] * others[i]), 0.0, 1.0),
+            ("times the next", mean(&|i| errors[i] * errors[(i + 1) % errors.len()]), 0.0, 1.0),
+        ] {
+            let off = (found - expected) / (scatter / count.sqrt());
+            println!("{count} {of}, axis {axis}: {what} {found:.4}, {off:.1} standard errors off");
+            assert!(off.abs() < 4.0, "{of}, axis {axis}: {what} {found}");
+        }
+    }
 }
 
 #[test]

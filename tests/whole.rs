@@ -13,6 +13,7 @@
 use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_data::rig::{KnownFabric, Rig};
 use cloth_fit::incremental::{FitReport, Stage, fit};
+use cloth_fit::judge::compare::run;
 use cloth_fit::judge::validation::validate;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::report::StageReport;
@@ -135,6 +136,48 @@ fn another_sample_is_met_as_far_as_it_differs() {
     });
     // Its curves are those of the first sample times factors within about 10 %.
     assert!(shares[0] < 0.01 && shares[1] > shares[0] && shares[1] < 0.3);
+}
+
+/// A set of every test on a coarse grid.
+fn coarse(name: &str) -> MeasurementSet {
+    let rig = Rig { nodes: [25, 25], measured: [13, 13], frames: 4, ..Rig::default() };
+    rig.measure(&KnownFabric::named(name).unwrap()).unwrap()
+}
+
+/// Miguel et al. 2012, §5.2.
+#[test]
+fn stages_run_in_the_published_order_each_on_the_ones_before() {
+    use Component::{BendDiagonal, BendWarp, BendWeft, Shear, StretchWarp, StretchWeft};
+    let settings = Settings { nodes: Some([9, 9]), ..Settings::default() };
+    let set = coarse("cotton-denim");
+    let report = fit(&set, &Stage::ALL, &Knowledge::default(), &settings, &mut Watch::default()).unwrap();
+    let order: Vec<_> = report.stages.iter().map(|stage| (stage.components.clone(), stage.pass)).collect();
+    let stretch = [StretchWeft, StretchWarp].map(|component| (vec![component], 1));
+    let others = [1, 2].map(|pass| [Shear, BendWeft, BendWarp, BendDiagonal].map(|c| (vec![c], pass)));
+    assert_eq!(order, [&stretch[..], &others[0], &others[1]].concat());
+    let carried = |stage: usize| &report.stages[stage].basis.carried[..];
+    assert_eq!(carried(2), [StretchWeft, StretchWarp]);
+    assert_eq!(carried(6), [StretchWeft, StretchWarp, BendWeft, BendWarp, BendDiagonal]);
+}
+
+/// Miguel et al. 2012, §6, by complex shear and corner pulls. The rig's truth is StVK. Of satin alone springs find all
+/// bending curves; others are assumed.
+#[test]
+fn springs_predict_worst_and_the_other_models_are_alike() {
+    for name in KnownFabric::names() {
+        let set = coarse(name);
+        let [stvk, soft, springs] = [Model::Stvk, Model::SoftConstraint, Model::Springs].map(|model| {
+            let settings = Settings { model, nodes: Some([13, 13]), ..Settings::default() };
+            let entry = run(&set, &settings, false, &mut Watch::default()).unwrap();
+            let complete = model != Model::Springs || name == "cotton-satin";
+            assert_eq!(entry.row.missing.is_empty(), complete, "{name} {model}");
+            let met = entry.row.validation.unwrap();
+            assert_eq!(met.dropped, 0, "{name} {model}");
+            met.relative.unwrap()
+        });
+        println!("{name:18} StVK {stvk:.4}, soft constraints {soft:.4}, springs {springs:.4}");
+        assert!((soft / stvk - 1.0).abs() < 0.05 && springs > 1.5 * stvk.max(soft), "{name}");
+    }
 }
 
 #[test]
