@@ -21,7 +21,7 @@ use cloth_data::frame::{MeasurementSet, Sequence};
 use cloth_data::kind::Kind;
 use cloth_data::strip::{Direction, Extension, StripTest, read_strip};
 use cloth_fit::judge::prediction::predict;
-use cloth_fit::stage::report::{ForceRow, SequenceReport};
+use cloth_fit::stage::report::{ForceRow, SequenceReport, StageReport};
 use cloth_fit::stage::{Settings, Watch, stretch};
 use cloth_sim::material::{Component, Curves, Model};
 use fit_cloth_tests::{data, weightless};
@@ -56,8 +56,8 @@ impl Table {
 }
 
 /// A sample as listed in `loading_summary.csv`.
-struct Knit {
-    name: String,
+pub(crate) struct Knit {
+    pub(crate) name: String,
     rest_length: f64,
     width: f64,
     strains: Vec<f64>,
@@ -65,7 +65,7 @@ struct Knit {
     narrowed: f64,
 }
 
-fn knits() -> Vec<Knit> {
+pub(crate) fn knits() -> Vec<Knit> {
     let table = Table::read(&data("knits_uniaxial").join("loading_summary.csv"));
     let mut knits: Vec<Knit> = Vec::new();
     for row in &table.rows {
@@ -130,6 +130,15 @@ impl Knit {
         })
     }
 
+    /// Fits videos 1–3 and predicts 4 and 5.
+    pub(crate) fn last_two_predicted(&self, model: Model) -> (StageReport, Vec<SequenceReport>) {
+        let settings = Settings { model, nodes: Some(self.nodes()), ..Settings::default() };
+        let [first, second, third, fourth, fifth] = self.set([1, 2, 3, 4, 5]);
+        let [known, unknown] =
+            [vec![first, second, third], vec![fourth, fifth]].map(|videos| weightless(&self.name, videos));
+        fit_and_predict(&known, &unknown, self.direction().1, &settings)
+    }
+
     /// Linear interpolation between frames at the strains of the summary.
     fn at_strains(&self, report: &SequenceReport, value: fn(&ForceRow) -> f64) -> Vec<f64> {
         let rows = &report.forces;
@@ -142,6 +151,22 @@ impl Knit {
     }
 }
 
+/// Fits a stretch curve to one set and predicts another.
+pub(crate) fn fit_and_predict(
+    known: &MeasurementSet,
+    unknown: &MeasurementSet,
+    component: Component,
+    settings: &Settings,
+) -> (StageReport, Vec<SequenceReport>) {
+    let report = stretch::fit(known, component, settings, &mut Watch::default()).unwrap().unwrap();
+    let curves = Curves::from_iter([(component, report.curve.curve.clone())]);
+    let kinds: Vec<Kind> = Kind::of(component).collect();
+    let prediction =
+        predict(unknown, &kinds, &curves, &Default::default(), settings, &Watch::default()).unwrap();
+    assert!(report.converged && report.dropped.is_empty() && prediction.dropped.is_empty());
+    (report, prediction.sequences)
+}
+
 fn rms(a: &[f64], b: &[f64]) -> f64 {
     (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
 }
@@ -152,26 +177,7 @@ fn predicted(model: Model) -> usize {
         "| sample ({model}) | points | fit % | 4: % | 5: % | all frames 4: % | 5: % | repeats 4: % | 5: % | narrowed to |"
     );
     let met = |knit: &Knit| {
-        let [first, second, third, fourth, fifth] = knit.set([1, 2, 3, 4, 5]);
-        let (_, component) = knit.direction();
-        let settings = Settings { model, nodes: Some(knit.nodes()), ..Settings::default() };
-        let known: MeasurementSet = weightless(&knit.name, vec![first, second, third]);
-        let unknown = weightless(&knit.name, vec![fourth, fifth]);
-        let report = stretch::fit(&known, component, &settings, &mut Watch::default()).unwrap().unwrap();
-        assert!(report.converged && report.dropped.is_empty());
-        let curves = Curves::from_iter([(component, report.curve.curve.clone())]);
-        let prediction = predict(
-            &unknown,
-            &Kind::of(component).collect::<Vec<_>>(),
-            &curves,
-            &Default::default(),
-            &settings,
-            &Watch::default(),
-        )
-        .unwrap();
-        assert!(prediction.dropped.is_empty() && report.dropped.is_empty());
-        let predictions = prediction.sequences;
-
+        let (report, predictions) = knit.last_two_predicted(model);
         let measured = report.sequences.iter().map(|video| knit.at_strains(video, |row| row.measured));
         let mut mean = vec![0.0; knit.strains.len()];
         measured

@@ -13,6 +13,7 @@ mod knits;
 mod motion;
 mod nist;
 mod picture_frame;
+mod repeats;
 mod strips;
 mod synthetic;
 mod wool;

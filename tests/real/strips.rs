@@ -29,7 +29,7 @@ const SHAPE: &str = "a strip test in the form that its README describes";
 
 pub(crate) const FABRICS: [&str; 2] = ["u3m_fab_cotton_knit", "u3m_fab_cupro_weave"];
 
-const STRIPS: [(&str, Direction, Component); 2] =
+pub(crate) const STRIPS: [(&str, Direction, Component); 2] =
     [("L_S2", Direction::Warp, Component::StretchWarp), ("W_S2", Direction::Weft, Component::StretchWeft)];
 
 const LAST_LOADING: usize = 6;
@@ -46,11 +46,15 @@ fn sample(fabric: &str) -> FabricFields {
 }
 
 pub(crate) fn import(fabric: &str, strip: &str, direction: Direction) -> Sequence {
+    import_branch(fabric, strip, direction, LAST_LOADING)
+}
+
+pub(crate) fn import_branch(fabric: &str, strip: &str, direction: Direction, branch: usize) -> Sequence {
     let gauge = &describe(fabric)["gauge"][strip];
     let metres = |key: &str| gauge[key].as_f64().expect(SHAPE);
     let extension = Extension::Separation("clamp_distance_m".into());
     let test = StripTest {
-        branches: Some(vec![LAST_LOADING]),
+        branches: Some(vec![branch]),
         ..StripTest::new(direction, metres("length_m"), metres("width_m"), extension, "force_N".into())
     };
     read_strip(&data(fabric).join(format!("{strip}.csv")), &test).unwrap().sequence
