@@ -27,7 +27,8 @@ fn droop(scene: &Scene, model: Model, stretch: f64, shear: f64) -> f64 {
     let stiffnesses =
         [(Component::StretchWeft, stretch), (Component::StretchWarp, stretch), (Component::Shear, shear)];
     let curves = stiffnesses.into_iter().map(curve).collect();
-    let material = Material { name: "sheet".into(), areal_density: 0.15, model, compression, curves };
+    let material =
+        Material { name: "sheet".into(), areal_density: 0.15, model, compression, curves, for_mesh: None };
     let simulation = to_rest(scene, &material, &mut |_| {}).unwrap();
     assert!(simulation.converged(), "{model}: {:?}", simulation.end);
     let weight = 0.15 * 0.25 * 9.81;

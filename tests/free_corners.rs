@@ -10,7 +10,7 @@
 //! most 0.4 % (relative L2 over the visited range), without noise.
 
 use cloth_data::frame::MeasurementSet;
-use cloth_fit::incremental::{Stage, fit};
+use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::optimise::uncertainty::Source;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
@@ -60,11 +60,15 @@ fn measured(share: f64, frames: usize) -> MeasurementSet {
     set
 }
 
+/// The fit of shear with known stretch.
+fn report(set: &MeasurementSet, settings: &Settings) -> FitReport {
+    let known = Knowledge::exact(truth()).without(&[Component::Shear]);
+    fit(set, &[Stage::Shear], &known, settings, &mut Watch::default()).unwrap()
+}
+
 /// Relative error of the stress, and share of its rows within the band.
 fn fitted(set: &MeasurementSet, settings: &Settings) -> [f64; 2] {
-    let known = Knowledge::exact(truth());
-    let known = known.without(&[Component::Shear]);
-    let report = fit(set, &[Stage::Shear], &known, settings, &mut Watch::default()).unwrap();
+    let report = report(set, settings);
     let stage = report.stage(Component::Shear).unwrap();
     assert!(stage.converged, "{:?}", stage.levels.iter().map(|l| (l.points, &l.status)).collect::<Vec<_>>());
     // The sources of the widest band make it up.
@@ -99,4 +103,28 @@ fn without_a_correction_the_grid_is_seen_and_no_part_of_the_band() {
     let set = measured(0.05, 12);
     let [error, inside] = fitted(&set, &Settings { corrected: false, ..Settings::default() });
     assert!(error > 0.006 && inside < 0.2, "{error} {inside}");
+}
+
+/// On a simulator's mesh its own curve gives the measured forces; the continuum's errs by the mesh.
+#[test]
+fn a_curve_for_a_mesh_gives_the_measured_forces_on_it() {
+    let set = measured(0.05, 12);
+    let mesh = Settings { for_mesh: Some(SIDE / 10.0), ..Settings::default() };
+    let misses = [&mesh, &Settings::default()].map(|settings| {
+        let curve = report(&set, settings).stage(Component::Shear).unwrap().curve.curve.clone();
+        let mut curves = truth();
+        curves.set(Component::Shear, curve);
+        let forces = own_mesh::equilibria(&set, &set.sequences[0], &curves, &mesh, |settled, forces| {
+            let measured = settled.frame.forces.iter().map(|component| component.force);
+            measured
+                .zip(forces)
+                .map(|(measured, force)| [(measured - force).powi(2), measured.powi(2)])
+                .collect()
+        });
+        let squares: Vec<[f64; 2]> = forces.into_iter().flat_map(|frame: Vec<[f64; 2]>| frame).collect();
+        let [miss, all] = [0, 1].map(|part| squares.iter().map(|square| square[part]).sum::<f64>());
+        (miss / all).sqrt()
+    });
+    println!("forces on cells of {:.0} mm: {:.2e} and {:.2e} off", 100.0 * SIDE, misses[0], misses[1]);
+    assert!(misses[0] < 0.003 && misses[1] > 4.0 * misses[0], "{misses:?}");
 }

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
     use cloth_data::io::{read_set, write_set};
     use cloth_data::measure::{bend_profile, tip_deflection};
-    use cloth_fit::twin::specimen::{Cells, Specimen};
+    use cloth_fit::twin::specimen::{Cells, GridSize, Specimen};
 
     const RIGIDITY: f64 = 2e-5;
 
@@ -203,7 +203,7 @@ mod tests {
             let specimen = Specimen::new(
                 &sequence,
                 &Cells {
-                    nodes: Some([41, 41]),
+                    size: GridSize::Nodes([41, 41]),
                     diagonals: Diagonals::Alternating,
                     refinement: 1,
                     to_clips: true,

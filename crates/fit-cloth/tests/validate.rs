@@ -308,3 +308,46 @@ fn springs_that_bend_on_another_grid_than_their_fits_are_named() {
         "{own_grid}{grid_of_fit}"
     );
 }
+
+#[test]
+fn curves_for_a_mesh_are_validated_on_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let [fit, out] = ["fit", "out"].map(|name| folder.path().join(name));
+    let denim = fixture("cotton-denim");
+    let material = fit.join("material.json");
+    let output = run(&["stretch", &denim, "--for-mesh", "10", "--points", "2", "--out", text(&fit)]);
+    let [stdout, stderr] = said(&output);
+    assert!(output.status.success(), "{stderr}");
+    assert!(
+        stdout.starts_with("Curves for a mesh with cells of 10 mm: they make up for its error\n"),
+        "{stdout}"
+    );
+    assert!(fs::read_to_string(&material).unwrap().contains("\"for_mesh_m\": 0.01,"));
+    let validate = |more: &[&str]| {
+        let output = run(&[
+            &[
+                "validate",
+                &denim,
+                "--kinds",
+                "stretch-warp",
+                "--material",
+                text(&material),
+                "--out",
+                text(&out),
+            ],
+            more,
+        ]
+        .concat());
+        assert!(output.status.success(), "{}", said(&output)[1]);
+        said(&output)[1].clone()
+    };
+    let warning = "these curves hold only on cells of 10 mm";
+    assert!(!validate(&[]).contains(warning));
+    assert!(validate(&["--nodes", "13x13"]).contains(warning));
+    let refused = run(&["stretch", &denim, "--for-mesh", "10", "--nodes", "9x9"]);
+    assert!(said(&refused)[1].contains("cannot be used with"));
+    for side in ["0", "-3", "much"] {
+        let refused = run(&["stretch", &denim, "--for-mesh", side]);
+        assert_eq!(refused.status.code(), Some(2), "{}", said(&refused)[1]);
+    }
+}

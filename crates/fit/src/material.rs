@@ -26,6 +26,8 @@ pub struct Material {
     pub compression: Compression,
     /// The curves; a component without one stores no energy.
     pub curves: Curves,
+    /// Side of the cells of the mesh that the curves are for, m; `None` for curves of the continuum.
+    pub for_mesh: Option<f64>,
 }
 
 impl Material {
@@ -37,13 +39,14 @@ impl Material {
         if path.extension().is_some_and(|ending| ending == "json") {
             let file = MaterialFile::read(path)?;
             let curves = file.curves()?;
-            let MaterialFile { model, compression, fabric, .. } = file;
+            let MaterialFile { model, compression, fabric, provenance, .. } = file;
             return Ok(Self {
                 name: fabric.name,
                 areal_density: fabric.areal_density_kg_m2,
                 model,
                 compression,
                 curves,
+                for_mesh: provenance.for_mesh_m,
             });
         }
         let file = TomlFile::read(path)?;
@@ -57,12 +60,13 @@ impl Material {
                 model: fabric.model,
                 compression: Compression::ZeroStrain,
                 curves,
+                for_mesh: None,
             });
         }
         let written = file.value::<HandWritten>()?;
         let curves = written.curves(path, &file)?;
         let HandWritten { name, areal_density_kg_m2: areal_density, model, compression, .. } = written;
-        Ok(Self { name, areal_density, model, compression, curves })
+        Ok(Self { name, areal_density, model, compression, curves, for_mesh: None })
     }
 
     /// Copies the material with another rule for compression.
@@ -70,7 +74,7 @@ impl Material {
     /// # Errors
     /// None, if the material's curves are valid.
     pub fn with_compression(self, compression: Compression) -> Result<Self> {
-        let Self { name, areal_density, model, curves, .. } = self;
+        let Self { name, areal_density, model, curves, for_mesh, .. } = self;
         let curve = |component: Component| {
             let curve = curves.get(component)?;
             let negative = model.negative_strain(component, compression);
@@ -82,7 +86,7 @@ impl Material {
             })
         };
         let curves = Component::ALL.into_iter().filter_map(curve).collect::<Result<Curves>>()?;
-        Ok(Self { name, areal_density, model, compression, curves })
+        Ok(Self { name, areal_density, model, compression, curves, for_mesh })
     }
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
         let finer = stage.reference.clone();
         stage.reference.curves.set(component, own.curve.curve.clone());
         let exact = own_mesh::simulated(&stage.scene, &stage.reference, &stage.settings)?;
-        let noisy = with_noise(&exact, 1.0, 1.0, 0);
+        let noisy = with_noise(&exact, 1.0, 1.0, false, 0);
         let floor = floor(&stage.fit(&noisy)?);
         runs.extend(stage.series("own mesh", component, &exact, floor, extent, progress));
         stage.reference = finer;
@@ -145,7 +145,7 @@ impl Stage {
         pairs
             .map(|(noise, seed)| {
                 progress.note(&format!("{name}: noise x {noise}, seed {seed}"));
-                let set = with_noise(exact, noise, noise, seed);
+                let set = with_noise(exact, noise, noise, false, seed);
                 Run {
                     points: Some(self.settings.points),
                     noise: Some(noise),

@@ -2,6 +2,7 @@
 
 use super::protocol::Rig;
 use crate::frame::{Clip, MeasurementSet, Noise, Phase};
+use crate::kind::Holding;
 use cloth_sim::mesh::Mesh;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rand::{SeedableRng, rngs::StdRng};
@@ -91,22 +92,11 @@ impl<'a> Instruments<'a> {
         self.noisy(force, FORCE_NOISE)
     }
 
-    /// Measured poses of the clips, one for each tracked body or, of bars hinged together, for all.
+    /// Measured poses of the clips.
     pub(super) fn poses(&mut self, exact: Vec<Isometry3<f64>>, tracked: &[Tracked]) -> Vec<Isometry3<f64>> {
-        if !(self.rig.noise && self.rig.clip_noise) {
-            return exact;
-        }
-        let mut error = |pose: &Isometry3<f64>, Tracked { centre, length }: &Tracked| {
-            let turn = UnitQuaternion::from_scaled_axis(self.normals(POSITION_NOISE / length));
-            let about = Isometry3::rotation_wrt_point(turn, pose * centre);
-            Translation3::from(self.normals(POSITION_NOISE)) * about
-        };
-        match tracked {
-            [all] => {
-                let common = exact.first().map(|first| error(first, all));
-                exact.iter().map(|pose| common.unwrap_or_default() * pose).collect()
-            }
-            _ => exact.iter().zip(tracked).map(|(pose, own)| error(pose, own) * pose).collect(),
+        match self.rig.noise && self.rig.clip_noise {
+            true => misplaced(&exact, tracked, |deviation| self.normals(deviation)),
+            false => exact,
         }
     }
 
@@ -122,12 +112,41 @@ impl<'a> Instruments<'a> {
     }
 }
 
-/// Adds the noise of the instruments, or a multiple of it, to shapes and forces, and declares it in the set.
+/// Poses of clips with errors: one for each tracked body or, of bars hinged together, for all.
+///
+/// * `normals` — three samples of a deviation
+fn misplaced(
+    exact: &[Isometry3<f64>],
+    tracked: &[Tracked],
+    mut normals: impl FnMut(f64) -> Vector3<f64>,
+) -> Vec<Isometry3<f64>> {
+    let mut error = |pose: &Isometry3<f64>, Tracked { centre, length }: &Tracked| {
+        let turn = UnitQuaternion::from_scaled_axis(normals(POSITION_NOISE / length));
+        let about = Isometry3::rotation_wrt_point(turn, pose * centre);
+        Translation3::from(normals(POSITION_NOISE)) * about
+    };
+    match tracked {
+        [all] => {
+            let common = exact.first().map(|first| error(first, all));
+            exact.iter().map(|pose| common.unwrap_or_default() * pose).collect()
+        }
+        _ => exact.iter().zip(tracked).map(|(pose, own)| error(pose, own) * pose).collect(),
+    }
+}
+
+/// Adds the noise of the instruments, or a multiple of it, to shapes, forces and, if asked, poses of clips, and declares
+/// it in the set.
 ///
 /// * `exact` — without noise, with one cord per clip
 /// * `drawn` — multiple of the instrument noise to add
 /// * `told` — multiple of it to declare
-pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> MeasurementSet {
+pub fn with_noise(
+    exact: &MeasurementSet,
+    drawn: f64,
+    told: f64,
+    clip_noise: bool,
+    seed: u64,
+) -> MeasurementSet {
     let mut set = exact.clone();
     for sequence in &mut set.sequences {
         let mut random = stream(seed, &sequence.name);
@@ -137,14 +156,20 @@ pub fn with_noise(exact: &MeasurementSet, drawn: f64, told: f64, seed: u64) -> M
                 drawn * deviation * sample
             })
         };
+        let hinged = sequence.kind.holding() == Holding::PictureFrame;
+        let tracked = Tracked::of(&sequence.clips, &sequence.mesh, hinged);
         for frame in &mut sequence.frames {
             frame.cords.iter_mut().for_each(|cord| cord.force += normals(FORCE_NOISE));
             frame.positions.iter_mut().flatten().for_each(|place| *place += normals(POSITION_NOISE));
+            if clip_noise {
+                frame.poses = misplaced(&frame.poses, &tracked, &mut normals);
+            }
         }
+        let of_clips = if clip_noise { told * POSITION_NOISE } else { 0.0 };
         sequence.noise = Some(Noise {
             position_m: Some(told * POSITION_NOISE),
             force_n: Some(told * FORCE_NOISE),
-            clip_m: (!sequence.clips.is_empty()).then_some(0.0),
+            clip_m: (!sequence.clips.is_empty()).then_some(of_clips),
         });
     }
     set

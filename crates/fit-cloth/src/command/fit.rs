@@ -252,6 +252,9 @@ fn tell_model(
     if material.provenance.as_published {
         writeln!(output, "{}\n", text::as_published(report))?;
     }
+    if let Some(side) = material.provenance.for_mesh_m {
+        writeln!(output, "{}\n", text::for_mesh(side))?;
+    }
     let told: Vec<_> = match printing.verbose {
         true => report.stages.iter().collect(),
         false => report.last_stages().collect(),

@@ -5,7 +5,7 @@ use crate::options::{CompressionChoice, STABLE, refuse_within};
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_simulation_plots;
-use crate::printing::{Printing, print_result, warn_of_defects};
+use crate::printing::{Printing, print_result, warn, warn_of_defects};
 use crate::progress::StepBar;
 use crate::text;
 use clap::{Args, ValueEnum};
@@ -109,6 +109,9 @@ pub fn run(
     let out = Output::claim(&folder)?;
     let findings = check_curves(material.model, &curves, |_| None);
     warn_of_defects(printing, &options.material.display().to_string(), &findings);
+    if let Some(warning) = material.for_mesh.and_then(|side| text::other_mesh(side, &scene.mesh)) {
+        warn(printing, &warning);
+    }
     let simulation = options.simulate(&scene, &material, printing)?;
     out.replace(|temporary| {
         write_simulation(temporary, &scene, &material, &simulation, options.format.into())?;

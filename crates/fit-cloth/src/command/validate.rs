@@ -93,7 +93,7 @@ pub fn run(
     for notice in &validation.prediction.notices {
         warn(printing, &text::notice(notice));
     }
-    if let Some(warning) = text::other_grid(&material, &validation) {
+    if let Some(warning) = text::other_grid(&material, &validation, options.on.nodes.is_some()) {
         warn(printing, &warning);
     }
     print_result(printing, output, &text, &serde_json::from_str(&json).unwrap_or(Value::Null))?;
@@ -123,15 +123,18 @@ impl ValidateOptions {
         }
     }
 
-    /// The settings of the fit that the curves come from, except the grid, which depends on the specimen.
+    /// The settings of the fit that the curves come from. Its nodes depend on the specimen; cells of a mesh do not.
     fn settings(&self, material: &MaterialFile) -> Settings {
         let defaults = Settings::default();
+        let provenance = &material.provenance;
         Settings {
             model: material.model,
             variant: material.variant,
             compression: material.compression,
-            diagonals: material.provenance.diagonals.unwrap_or(defaults.diagonals),
+            diagonals: provenance.diagonals.unwrap_or(defaults.diagonals),
             nodes: self.on.nodes,
+            for_mesh: provenance.for_mesh_m.filter(|_| self.on.nodes.is_none()),
+            corrected: !provenance.is_for_one_grid(),
             ..defaults
         }
     }

@@ -68,6 +68,9 @@ pub struct FitFlags {
     /// Use the method of Miguel et al. 2012 as published, for comparison: slower, and bending comes out too stiff
     #[arg(long, conflicts_with_all = ["constraints", "robust"])]
     pub as_published: bool,
+    /// Curves for the mesh of a simulator whose cells have sides of MM millimetres [default: for the continuum, with the error of the grid corrected]
+    #[arg(long, value_name = "MM", value_parser = parse_side, conflicts_with_all = ["nodes", "as_published"])]
+    pub for_mesh: Option<f64>,
     /// A material.json whose curves are taken as exact and not fitted, except those that the command is named after
     #[arg(long, value_name = "FILE")]
     pub known: Option<PathBuf>,
@@ -132,7 +135,12 @@ impl CurveFlags {
 impl FitFlags {
     /// The settings of one model's fit.
     pub fn settings(&self, model: Model) -> Settings {
-        let settings = Settings { model, variant: self.variant.into(), ..self.how.settings(&self.on) };
+        let settings = Settings {
+            model,
+            variant: self.variant.into(),
+            for_mesh: self.for_mesh.map(|side| 1e-3 * side),
+            ..self.how.settings(&self.on)
+        };
         if self.as_published { settings.as_published() } else { settings }
     }
 }
@@ -185,6 +193,15 @@ pub fn parse_kind(name: &str, among: &[Kind]) -> Result<Kind, String> {
     let names = || among.iter().map(|kind| kind.to_string()).collect::<Vec<_>>().join(", ");
     let found = among.iter().find(|kind| kind.to_string() == name);
     found.copied().ok_or_else(|| format!("{name}: expected one of {}", names()))
+}
+
+/// Parses the side of a cell, mm.
+///
+/// # Errors
+/// No number from 0.01 to 1000.
+fn parse_side(text: &str) -> Result<f64, String> {
+    let side = text.parse().ok().filter(|side| (0.01..=1e3).contains(side));
+    side.ok_or_else(|| format!("{text}: expected millimetres from 0.01 to 1000, as in 5"))
 }
 
 /// Parses columns and rows, as in 25x25.

@@ -8,6 +8,7 @@ use cloth_scene::droop::Droop;
 use cloth_scene::scene::Scene;
 use cloth_scene::simulation::{End, Simulation};
 use cloth_sim::descent::Descent;
+use cloth_sim::mesh::Mesh;
 use std::fmt::Write;
 
 /// Scene and material, energies, forces and measures, and a verdict.
@@ -40,6 +41,25 @@ pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -
     text += &simulation.droop.as_ref().map(droop).unwrap_or_default();
     text += &simulation.drape.as_ref().map(drape).unwrap_or_default();
     format!("{text}\n{}{}\n", interventions(&simulation.interventions), verdict(simulation))
+}
+
+/// Cells may differ by this share from those that curves are for.
+const ALIKE: f64 = 0.1;
+
+/// A warning if curves for one mesh are simulated on another one.
+///
+/// * `side` — of the cells that the curves are for, m
+pub fn other_mesh(side: f64, mesh: &Mesh) -> Option<String> {
+    let area: f64 = (0..mesh.triangles.len()).map(|triangle| mesh.double_area(triangle)).sum();
+    // A cell is two triangles.
+    let own = (area / mesh.triangles.len() as f64).sqrt();
+    ((own / side - 1.0).abs() > ALIKE).then(|| {
+        format!(
+            "the curves make up for the error of cells of {} mm, this sheet's are {:.1} mm (a fit without --for-mesh, or for them)",
+            1e3 * side,
+            1e3 * own
+        )
+    })
 }
 
 fn droop(droop: &Droop) -> String {

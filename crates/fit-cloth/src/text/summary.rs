@@ -56,6 +56,13 @@ pub fn as_published(report: &FitReport) -> String {
     format!("{}, fitted as published (Miguel et al. 2012){}", report.model, if bends { bias } else { "" })
 }
 
+/// States that curves are for one mesh.
+///
+/// * `side` — of its cells, m
+pub fn for_mesh(side: f64) -> String {
+    format!("Curves for a mesh with cells of {} mm: they make up for its error", 1e3 * side)
+}
+
 /// The reason why a component has no curve; `None` if it has one.
 pub fn missing(report: &FitReport, component: Component) -> Option<String> {
     if report.knowledge.knows(component) {

@@ -29,12 +29,24 @@ pub fn validation(set: &MeasurementSet, material: &MaterialFile, validation: &Va
     format!("{text}\n{helped}{}\n", verdict(material, validation))
 }
 
-/// A warning if bending springs are simulated on a grid that their fit did not use: their moments depend on the grid.
-pub fn other_grid(material: &MaterialFile, validation: &Validation) -> Option<String> {
-    let bends = |(component, entry): (&Component, &CurveEntry)| component.is_bending() && entry.observed;
-    if !material.model.is_of_springs() || !material.curves.iter().any(bends) {
-        return None;
+/// A warning if curves for one grid are simulated on another one: bending springs, whose moments depend on it, and curves
+/// that make up for its error.
+///
+/// * `nodes` — a grid was asked for
+pub fn other_grid(material: &MaterialFile, validation: &Validation, nodes: bool) -> Option<String> {
+    if let Some(side) = material.provenance.for_mesh_m {
+        let side = 1e3 * side;
+        return nodes.then(|| {
+            format!("these curves hold only on cells of {side} mm, their default here, without --nodes")
+        });
     }
+    let bends = |(component, entry): (&Component, &CurveEntry)| component.is_bending() && entry.observed;
+    let of_springs = material.model.is_of_springs() && material.curves.iter().any(bends);
+    let curves = match of_springs {
+        true => "bending curves of springs",
+        false if material.provenance.as_published => "curves fitted as published",
+        false => return None,
+    };
     let fitted: BTreeSet<[usize; 2]> = material.provenance.nodes.values().copied().collect();
     let reports = validation.sequences.iter().map(|sequence| &sequence.report);
     let others: Vec<&str> = reports
@@ -44,7 +56,7 @@ pub fn other_grid(material: &MaterialFile, validation: &Validation) -> Option<St
     let size = |[columns, rows]: &[usize; 2]| format!("{columns}x{rows}");
     (!others.is_empty() && !fitted.is_empty()).then(|| {
         format!(
-            "bending curves of springs hold only on the grid of their fit, {}; simulate {} on it with --nodes",
+            "{curves} hold only on the grid of their fit, {}; simulate {} on it with --nodes",
             list(fitted.iter().map(size)),
             list(&others)
         )

@@ -162,7 +162,7 @@ fn parts(
         flat: kind.is_on_the_bias() || !stretches && !bends,
         components: Component::ALL.into_iter().filter(|&component| takes_part(component)).collect(),
         areal_density: set.fabric.areal_density_kg_m2,
-        nodes: settings.nodes,
+        grid: settings.grid(),
         diagonals: settings.diagonals,
         refinement: 1,
         table: settings.table,

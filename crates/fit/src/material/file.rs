@@ -73,6 +73,9 @@ pub struct Provenance {
     /// True for a fit by the published method ([`Settings::as_published`]); omitted otherwise.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub as_published: bool,
+    /// Side of the cells of the mesh that the curves are for, m; omitted for curves of the continuum.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub for_mesh_m: Option<f64>,
     /// Residuals above this multiple of the noise had less weight; omitted if all had full weight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robust: Option<f64>,
@@ -85,6 +88,13 @@ pub struct Provenance {
     /// Changes after the fit, in order: repairs, and edits by hand.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<String>,
+}
+
+impl Provenance {
+    /// True if the curves make up for the error of their grid, whatever the model.
+    pub fn is_for_one_grid(&self) -> bool {
+        self.as_published || self.for_mesh_m.is_some()
+    }
 }
 
 impl MaterialFile {
@@ -124,6 +134,7 @@ impl MaterialFile {
                 program: concat!("fit-cloth ", env!("CARGO_PKG_VERSION")).into(),
                 constraints: settings.constraints,
                 as_published: settings.is_as_published(),
+                for_mesh_m: settings.for_mesh,
                 robust: settings.robust,
                 diagonals: Some(settings.diagonals),
                 nodes: nodes.collect(),

@@ -58,7 +58,7 @@ impl Plan {
             model: settings.model,
             components: self.components.clone(),
             areal_density: set.fabric.areal_density_kg_m2,
-            nodes: settings.nodes,
+            grid: settings.grid(),
             diagonals: settings.diagonals,
             refinement,
             table: settings.table,

@@ -4,6 +4,7 @@ use super::growth_rule::GrowthRule;
 use crate::equilibria::SolveStart;
 use crate::optimise::gauss_newton::{Globalisation, Options};
 use crate::twin::replica::TableHold;
+use crate::twin::specimen::GridSize;
 use cloth_data::error::{Error, Result};
 use cloth_sim::equilibrium;
 use cloth_sim::material::{Component, Compression, Model};
@@ -97,6 +98,9 @@ pub struct Settings {
     pub variant: Variant,
     /// Columns and rows of the simulation's grid; default as many cells as 25×25 nodes have, near square.
     pub nodes: Option<[usize; 2]>,
+    /// Side of the cells of a simulator's mesh, m: curves for that grid, at least two cells a side; default `None`: curves
+    /// of the continuum.
+    pub for_mesh: Option<f64>,
     /// Split of the grid's cells; default alternating: cells all split one way twist a bent sheet.
     pub diagonals: Diagonals,
     /// Maximum number of control points; default 5.
@@ -141,6 +145,7 @@ impl Default for Settings {
             model: Model::Stvk,
             variant: Variant::Orthotropic,
             nodes: None,
+            for_mesh: None,
             diagonals: Diagonals::Alternating,
             points: 5,
             constraints: Constraints::Stable,
@@ -174,7 +179,16 @@ impl Settings {
 
     /// True if simulated values are corrected for the grid.
     pub(crate) fn corrects(&self) -> bool {
-        self.corrected && !self.model.is_of_springs()
+        self.corrected && self.for_mesh.is_none() && !self.model.is_of_springs()
+    }
+
+    /// Size of the grid.
+    pub(crate) fn grid(&self) -> GridSize {
+        match (self.for_mesh, self.nodes) {
+            (Some(side), _) => GridSize::Cell(side),
+            (None, Some(nodes)) => GridSize::Nodes(nodes),
+            (None, None) => GridSize::NearSquare,
+        }
     }
 
     /// The published method, with the same model, variant, grid and compression. Each of these settings can also be
@@ -213,7 +227,7 @@ impl Settings {
     ///
     /// # Errors
     /// No control point, or more than 50; `robust` or the start factor not positive; no try at growth; fewer than 3
-    /// nodes per side or more than 1000.
+    /// nodes per side or more than 1000; a side of the cells that is not positive, or beside nodes.
     pub fn validate(&self) -> Result<()> {
         let setting = |field, found: String, expected: &str| {
             Err(Error::Setting { field, found, expected: expected.into() })
@@ -233,6 +247,14 @@ impl Settings {
         }
         if self.growth.tries == 0 {
             return setting("growth.tries", "0".into(), "at least 1");
+        }
+        if let Some(side) = self.for_mesh {
+            if !(side > 0.0 && side.is_finite()) {
+                return setting("for_mesh", side.to_string(), "a positive side of a cell, m");
+            }
+            if let Some([columns, rows]) = self.nodes {
+                return setting("nodes", format!("{columns}x{rows}"), "none beside a side of the cells");
+            }
         }
         match self.nodes {
             Some(nodes) if nodes.iter().any(|side| !(3..=1000).contains(side)) => {

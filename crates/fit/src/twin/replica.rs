@@ -146,7 +146,7 @@ impl Replica {
         let specimen = Specimen::new(
             sequence,
             &Cells {
-                nodes: parts.nodes,
+                size: parts.grid,
                 diagonals,
                 // Off a table the overhang is refined.
                 refinement: if sequence.clips.is_empty() { 1 } else { parts.refinement },
@@ -554,6 +554,7 @@ fn phase_of(extensions: &[f64], index: usize) -> Phase {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::twin::specimen::GridSize;
     use cloth_sim::mesh::Grid;
 
     #[test]
@@ -593,7 +594,7 @@ mod tests {
                 model,
                 components: vec![Component::StretchWeft],
                 areal_density: 0.2,
-                nodes: Some(nodes),
+                grid: GridSize::Nodes(nodes),
                 diagonals: Diagonals::Forward,
                 refinement: 1,
                 table: TableHold::default(),

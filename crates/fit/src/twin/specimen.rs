@@ -16,6 +16,9 @@ use cloth_data::rectangle::{Rectangle, bounds};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Vector2, Vector3};
 
+/// Most nodes along a side.
+pub(crate) const MOST_NODES: usize = 1000;
+
 /// Default number of cells along each side of a square specimen: 25×25 nodes.
 const DEFAULT_CELLS: usize = 24;
 
@@ -36,11 +39,34 @@ pub struct Specimen {
     pub gripped: Vec<f64>,
 }
 
+/// Size of a specimen's grid.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum GridSize {
+    /// As many cells as 25×25 nodes have, near square.
+    #[default]
+    NearSquare,
+    /// Columns and rows.
+    Nodes([usize; 2]),
+    /// Side of a cell, m; at least two cells a side.
+    Cell(f64),
+}
+
+impl GridSize {
+    /// Columns and rows on a rectangle.
+    fn nodes(self, width: f64, height: f64, diagonals: Diagonals) -> [usize; 2] {
+        match self {
+            Self::NearSquare => near_square(width, height, diagonals),
+            Self::Nodes(nodes) => nodes,
+            Self::Cell(side) => [width, height].map(|length| (length / side).round().max(2.0) as usize + 1),
+        }
+    }
+}
+
 /// The grid of a specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cells {
-    /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
-    pub nodes: Option<[usize; 2]>,
+    /// Columns and rows.
+    pub size: GridSize,
     /// Split of the cells.
     pub diagonals: Diagonals,
     /// Every cell is cut into so many along each side.
@@ -54,15 +80,23 @@ impl Specimen {
     /// rigidly, and the grid's border lies on the bar's edge, wherever that is.
     ///
     /// # Errors
-    /// A rest mesh that is not a flat rectangle; too few nodes.
+    /// A rest mesh that is not a flat rectangle; too few nodes; cells too small for it.
     pub fn new(sequence: &Sequence, cells: &Cells) -> Result<Self> {
-        let Cells { nodes, diagonals, refinement, to_clips } = *cells;
+        let Cells { size, diagonals, refinement, to_clips } = *cells;
         let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
         let rectangle = Rectangle::of(sequence)?;
         let (free, gripped) = free_region(sequence, &rectangle);
         let [corner, opposite] = free;
         let [width, height] = [opposite.x - corner.x, opposite.y - corner.y];
-        let [columns, rows] = nodes.unwrap_or_else(|| near_square(width, height, diagonals));
+        let [columns, rows] = size.nodes(width, height, diagonals);
+        if columns.max(rows) > MOST_NODES {
+            let found = format!("{columns}x{rows} nodes");
+            return Err(Error::geometry(
+                &sequence.name,
+                found,
+                format!("at most {MOST_NODES} a side (larger cells)"),
+            ));
+        }
         let counts = [columns, rows].map(|nodes| refinement * nodes.saturating_sub(1) + 1);
         let grid = Grid { columns: counts[0], rows: counts[1], width, height, diagonals };
         let mut mesh = grid.mesh().map_err(mechanics)?;
@@ -183,8 +217,8 @@ mod tests {
         }
     }
 
-    fn cells(nodes: Option<[usize; 2]>) -> Cells {
-        Cells { nodes, diagonals: Diagonals::Forward, refinement: 1, to_clips: true }
+    fn cells(size: GridSize) -> Cells {
+        Cells { size, diagonals: Diagonals::Forward, refinement: 1, to_clips: true }
     }
 
     fn rectangle(width: f64, height: f64) -> Mesh {
@@ -196,7 +230,7 @@ mod tests {
         let mut mesh = rectangle(0.08, 0.04);
         let motion = Isometry3::new(Vector3::new(0.3, -0.2, 0.9), Vector3::new(0.4, 1.2, -0.7));
         mesh.positions.iter_mut().for_each(|p| *p = motion.rotation * *p + motion.translation.vector);
-        let specimen = Specimen::new(&sequence(mesh), &cells(None)).unwrap();
+        let specimen = Specimen::new(&sequence(mesh), &cells(GridSize::NearSquare)).unwrap();
         let [dx, dy] = specimen.grid.cell();
         assert!((dx / dy - 1.0).abs() < 0.05, "{dx} {dy}");
         assert!((specimen.grid.width - 0.08).abs() < 1e-12 && (specimen.grid.height - 0.04).abs() < 1e-12);
@@ -214,7 +248,7 @@ mod tests {
         let mut mesh = rectangle(0.03, 0.1);
         let turn = nalgebra::Rotation2::new(std::f64::consts::FRAC_PI_4);
         mesh.material.iter_mut().for_each(|m| *m = turn * *m);
-        let specimen = Specimen::new(&sequence(mesh), &cells(Some([5, 13]))).unwrap();
+        let specimen = Specimen::new(&sequence(mesh), &cells(GridSize::Nodes([5, 13]))).unwrap();
         assert_eq!(specimen.grid.columns * specimen.grid.rows, 65);
         let along = specimen.mesh.material[1] - specimen.mesh.material[0];
         assert!((along.x.abs() - along.y.abs()).abs() < 1e-9 * along.norm());
@@ -225,6 +259,6 @@ mod tests {
         let mut mesh = rectangle(0.1, 0.1);
         let shear = |p: f64, q: f64| p + 0.3 * q;
         mesh.positions.iter_mut().for_each(|p| p.x = shear(p.x, p.y));
-        assert!(Specimen::new(&sequence(mesh), &cells(None)).is_err());
+        assert!(Specimen::new(&sequence(mesh), &cells(GridSize::NearSquare)).is_err());
     }
 }

@@ -20,7 +20,7 @@ use super::parts::Parts;
 use super::point::{MeasuredPoint, Term, lagrange};
 use super::profile::{Along, Profile};
 use super::skip::Skip;
-use crate::twin::specimen::Specimen;
+use crate::twin::specimen::{GridSize, Specimen};
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Frame, Sequence};
 use cloth_sim::cloth::Cloth;
@@ -39,8 +39,8 @@ const MOST_CELLS: f64 = 192.0;
 /// Largest difference of the slope at the edge from the measured one, rad: noise of 0.1 mm tilts a millimetre by 0.1.
 const WANDER: f64 = 0.2;
 
-/// Fewest cells of springs past the edge: two held lines, and two bends.
-const FEWEST_SPRINGS: usize = 4;
+/// Fewest cells of the sheet's own grid past the edge: two held lines, and two bends.
+const FEWEST_OWN_CELLS: usize = 4;
 
 /// Fewest points past the edge: five unknowns of the edge, and some that tell the curve.
 const FEWEST_POINTS: usize = 6;
@@ -133,18 +133,17 @@ impl Overhang {
         let start = profile.at(edge);
         let peirce = peirce(outermost.1 - start, outermost.0 - edge, &weight);
         let bending_lengths = length / (peirce[0] / weight.norm()).cbrt();
-        let cells = match parts.nodes {
-            Some(nodes) => {
-                (nodes[layout.sheet.outward.iamax()] as f64 - 1.0).max(FEWEST_CELLS * bending_lengths)
-            }
-            None => CELLS.max(CELLS_OF_BENDING_LENGTH * bending_lengths),
+        let along = layout.sheet.outward.iamax();
+        let cells = match parts.grid {
+            GridSize::Nodes(nodes) => (nodes[along] as f64 - 1.0).max(FEWEST_CELLS * bending_lengths),
+            _ => CELLS.max(CELLS_OF_BENDING_LENGTH * bending_lengths),
         };
         let mut cells = cells.min(MOST_CELLS).ceil().max(2.0) as usize * parts.refinement;
         // What ring-2 springs resist depends on their length: that of the sheet's own grid.
-        if parts.model.is_of_springs() {
-            let own = specimen.grid.cell()[layout.sheet.outward.iamax()];
+        if parts.model.is_of_springs() || matches!(parts.grid, GridSize::Cell(_)) {
+            let own = specimen.grid.cell()[along];
             cells = (length / own + 0.5).floor() as usize;
-            if cells < FEWEST_SPRINGS {
+            if cells < FEWEST_OWN_CELLS {
                 return Ok(Err(Skip::FewPoints { seen: hanging.len() }));
             }
             edge = sheet.length - (cells as f64 - 0.5) * own;

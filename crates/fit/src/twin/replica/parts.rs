@@ -1,5 +1,6 @@
 //! Components and discretisation of a replica.
 
+use crate::twin::specimen::GridSize;
 use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::Diagonals;
 
@@ -12,8 +13,8 @@ pub struct Parts {
     pub components: Vec<Component>,
     /// kg/m².
     pub areal_density: f64,
-    /// Columns and rows; `None` = as many cells as 25×25 nodes have, near square.
-    pub nodes: Option<[usize; 2]>,
+    /// Size of the grid.
+    pub grid: GridSize,
     /// Split of the cells.
     pub diagonals: Diagonals,
     /// Multiple of the cells; above 1, of a grid that corrects another.
