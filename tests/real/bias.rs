@@ -35,7 +35,7 @@ use cloth_fit::incremental::{Stage, fit};
 use cloth_fit::judge::prediction::predict;
 use cloth_fit::stage::knowledge::Knowledge;
 use cloth_fit::stage::{Settings, Watch};
-use cloth_fit::twin::specimen::{Cells, Specimen};
+use cloth_fit::twin::specimen::{Cells, GridSize, Specimen};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::material::{Component, Curves};
 use cloth_sim::mesh::Diagonals;
@@ -170,7 +170,7 @@ fn glass_is_a_bias_strip_with_the_forces_and_angles_of_its_table() {
     // Square cells: their diagonals run along the yarns.
     let specimen = Specimen::new(
         sequence,
-        &Cells { nodes: None, diagonals: Diagonals::Crossed, refinement: 1, to_clips: true },
+        &Cells { size: GridSize::NearSquare, diagonals: Diagonals::Crossed, refinement: 1, to_clips: true },
     )
     .unwrap();
     let cells = specimen.grid.cell();

@@ -65,14 +65,20 @@ pub fn grow(
     let mut levels = Vec::new();
     let mut kept: Option<(Unknowns, Outcome, LinearConstraints)> = None;
     let rule = settings.growth;
-    // Forces are hardly wrong for the grid: their correction waits for the level that is kept.
-    let on_the_way = usize::from(simulation.task().objective == Objective::Positions);
+    // Forces are hardly wrong for the grid: their correction waits for the level that is kept. The first level's of positions
+    // is as good as the curve is; each further one starts from the one before.
+    let on_the_way = simulation.task().objective == Objective::Positions;
     let mut unknowns = simulation.unknowns().clone();
     let mut tries = 0;
     loop {
         let points = points_of(&unknowns);
+        let corrections = usize::from(on_the_way && levels.is_empty());
+        if on_the_way && !levels.is_empty() {
+            simulation.set_unknowns(unknowns.clone());
+            simulation.correct();
+        }
         let (outcome, domain, level) =
-            fit_level(simulation, &unknowns, on_the_way, settings, lowest_tangents, watch)?;
+            fit_level(simulation, &unknowns, corrections, settings, lowest_tangents, watch)?;
         levels.push(level);
         unknowns = unknowns.with_values(&outcome.point)?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();
