@@ -22,8 +22,9 @@ use cloth_sim::material::{Component, Curves, Model};
 use cloth_sim::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 use fit_cloth_tests::{coverage, stress_error};
 
-fn measure(fabric: &KnownFabric, full_noise: bool) -> MeasurementSet {
-    Rig { noise: full_noise, cord_hysteresis: full_noise, ..Rig::default() }.measure(fabric).unwrap()
+fn measure(fabric: &KnownFabric, full_noise: bool, nodes: usize) -> MeasurementSet {
+    let rig = Rig { noise: full_noise, cord_hysteresis: full_noise, nodes: [nodes; 2], ..Rig::default() };
+    rig.measure(fabric).unwrap()
 }
 
 fn fit_all(set: &MeasurementSet, model: Model) -> FitReport {
@@ -48,10 +49,12 @@ fn held(stage: &StageReport, truth: &Curves) -> f64 {
 }
 
 /// Fits and validates the four fabrics.
-fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
+///
+/// * `nodes` — of the rig, a side
+fn comes_back(full_noise: bool, nodes: usize, [stretch, shear, bending]: [f64; 3]) {
     for name in KnownFabric::names() {
         let fabric = KnownFabric::named(name).unwrap();
-        let set = measure(&fabric, full_noise);
+        let set = measure(&fabric, full_noise, nodes);
         let report = fit_all(&set, Model::Stvk);
         let truth = fabric.curves().unwrap();
         for component in Component::ALL {
@@ -101,9 +104,6 @@ fn comes_back(full_noise: bool, [stretch, shear, bending]: [f64; 3]) {
                 sequence.report.multi_stable
             );
             assert!(share <= 0.1, "{} {}: {share}", name, sequence.report.name);
-            // Satin is thin enough to fold in more than one way.
-            let folds = name == "cotton-satin" && sequence.report.kind == Kind::ComplexShear;
-            assert!(!folds || !sequence.report.multi_stable.is_empty());
         }
     }
 }
@@ -183,12 +183,13 @@ fn springs_predict_worst_and_the_other_models_are_alike() {
 #[test]
 #[ignore = "release: four fabrics without noise"]
 fn four_fabrics_come_back() {
-    comes_back(false, [0.01, 0.03, 0.05]);
+    comes_back(false, 61, [0.003, 0.008, 0.03]);
+    comes_back(false, 97, [0.003, 0.01, 0.02]);
 }
 
 #[test]
 fn four_fabrics_come_back_through_full_noise() {
-    comes_back(true, [0.02, 0.05, 0.1]);
+    comes_back(true, 61, [0.02, 0.05, 0.1]);
 }
 
 /// Coverage of all bands over many seeds, of everything that the rig can add: noise of vertices, forces and clip poses.

@@ -9,12 +9,11 @@
 
 use super::frames::Equilibria;
 use super::observation::{Objective, Observation};
-use super::state::State;
-use crate::twin::replica::{MeasuredPoint, Replica, ReplicaFrame};
-use cloth_data::locator::Locator;
+use super::state::{Correction, State};
+use crate::twin::replica::{MeasuredPoint, Replica, ReplicaFrame, lagrange};
 use cloth_sim::equilibrium::{Solver, Status, Tolerance};
 use cloth_sim::material::Curves;
-use nalgebra::{DMatrix, DVector, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -56,7 +55,7 @@ impl<'a> Equilibria<'a> {
             return;
         }
         let curves = self.curves();
-        let corrections: Vec<Option<Vec<f64>>> = match self.task.objective {
+        let corrections: Vec<Option<Correction>> = match self.task.objective {
             Objective::Positions => {
                 let frames = self.frames.par_iter().zip(&self.states);
                 frames
@@ -67,8 +66,10 @@ impl<'a> Equilibria<'a> {
                 let samples = self.samples().into_par_iter();
                 let corrected: Vec<Corrected> =
                     samples.filter_map(|place| self.of_clips(&curves, place)).collect();
+                let of_forces = |values| Correction { values, points: Vec::new() };
+                let places = 0..self.frames.len();
                 let corrections =
-                    (0..self.frames.len()).map(|place| self.between(&corrected, place)).collect();
+                    places.map(|place| self.between(&corrected, place).map(of_forces)).collect();
                 for Corrected { place, finer, .. } in corrected {
                     self.states[place].finer = Some(Arc::new(finer));
                 }
@@ -87,7 +88,7 @@ impl<'a> Equilibria<'a> {
             let replica = &self.replicas[index];
             let observations = self.observations(&replica.frames[place]);
             let value = |(row, observation): (usize, &Observation)| {
-                state.correction.get(row).unwrap_or(&0.0) / (observation.spread * self.scale(replica))
+                state.correction.values.get(row).unwrap_or(&0.0) / (observation.spread * self.scale(replica))
             };
             let values = observations.iter().enumerate().map(value);
             let own = DMatrix::from_iterator(observations.len(), 1, values);
@@ -103,7 +104,7 @@ impl<'a> Equilibria<'a> {
     }
 
     /// Correction of the positions in a frame off a table.
-    fn of_overhang(&self, curves: &Curves, index: usize, place: usize, state: &State) -> Option<Vec<f64>> {
+    fn of_overhang(&self, curves: &Curves, index: usize, place: usize, state: &State) -> Option<Correction> {
         let replica = &self.replicas[index];
         let frame = &replica.frames[place];
         let (finer, fine) = self.finer(replica, frame)?;
@@ -124,14 +125,15 @@ impl<'a> Equilibria<'a> {
         });
         let ratio = fine_overhang.grid.cell()[0] / coarse_overhang.grid.cell()[0];
         let axes = frame.compared_axes().len();
-        let of_point = extrapolated(&coarse, &fine, ratio);
-        Some(match (&frame.merging, self.task.robust) {
+        let points = extrapolated(&coarse, &fine, ratio);
+        let values = match (&frame.merging, self.task.robust) {
             (Some(merging), None) => {
-                let value = |point: usize, axis: usize| of_point[axes * point + axis / 2];
+                let value = |point: usize, axis: usize| points[axes * point + axis / 2];
                 merging.of(value).0.into_flattened()
             }
-            _ => of_point,
-        })
+            _ => points.clone(),
+        };
+        Some(Correction { values, points })
     }
 
     /// Brings a frame to a stable equilibrium; returns its forces along the measured components, N.
@@ -158,7 +160,7 @@ impl<'a> Equilibria<'a> {
     pub fn uncorrected(&self) -> usize {
         let refined = |index: usize| self.finer.iter().any(|finer| finer.name == self.replicas[index].name);
         let frames = self.frames.iter().zip(&self.states);
-        frames.filter(|((index, _), state)| refined(*index) && state.correction.is_empty()).count()
+        frames.filter(|((index, _), state)| refined(*index) && state.correction.values.is_empty()).count()
     }
 
     fn extension(&self, place: usize) -> f64 {
@@ -238,21 +240,28 @@ fn between(known: &[(f64, &Vec<f64>)], extension: f64) -> Option<Vec<f64>> {
         .then(|| low.1.iter().zip(high.1).map(|(low, high)| low + share * (high - low)).collect())
 }
 
-/// A state on the finer grid, 3 stacked coordinates per node, m: held nodes in place, the others in the coarse triangles.
+/// A state on the finer grid, 3 stacked coordinates per node, m: held nodes in place, the others on a smooth surface
+/// through the coarse ones, so that few steps lead to their balance.
 fn interpolated(coarse: &Replica, finer: &Replica, fine: &ReplicaFrame, x: &[f64]) -> Vec<f64> {
-    let mesh = &coarse.specimen.mesh;
-    let flat: Vec<Vector2<f64>> = mesh.positions.iter().map(|p| p.xy()).collect();
-    let grid = coarse.specimen.grid;
-    let locator = Locator::new(mesh, &flat, [grid.width, grid.height]);
-    let places: Vec<Vector3<f64>> = x.chunks_exact(3).map(Vector3::from_column_slice).collect();
-    let mut own = fine.start.clone();
+    let [grid, fine_grid] = [coarse.specimen.grid, finer.specimen.grid];
+    let (columns, corners) = (fine_grid.columns, fine_grid.columns * fine_grid.rows);
+    let [across, up] = [(grid.columns, columns), (grid.rows, fine_grid.rows)]
+        .map(|(coarse, fine)| (coarse - 1) as f64 / (fine - 1) as f64);
     let cloth = finer.cloth(fine);
-    for (node, rest) in finer.specimen.mesh.positions.iter().enumerate() {
-        let place = locator.find(rest.xy()).interpolate(mesh, &places);
-        for axis in 0..3 {
-            if cloth.unknown(3 * node + axis).is_some() {
-                own[3 * node + axis] = place[axis];
-            }
+    let mut own = fine.start.clone();
+    for node in 0..finer.specimen.mesh.positions.len() {
+        // After the corners come the centres of crossed cells.
+        let (column, row) = match node.checked_sub(corners) {
+            None => ((node % columns) as f64, (node / columns) as f64),
+            Some(cell) => ((cell % (columns - 1)) as f64 + 0.5, (cell / (columns - 1)) as f64 + 0.5),
+        };
+        let [of_columns, of_rows] = [(column * across, grid.columns), (row * up, grid.rows)]
+            .map(|(place, nodes)| lagrange(place, nodes));
+        for axis in (0..3).filter(|&axis| cloth.unknown(3 * node + axis).is_some()) {
+            let along = |row: usize| -> f64 {
+                of_columns.iter().map(|&(column, weight)| weight * x[3 * grid.node(column, row) + axis]).sum()
+            };
+            own[3 * node + axis] = of_rows.iter().map(|&(row, weight)| weight * along(row)).sum();
         }
     }
     own

@@ -38,6 +38,8 @@ pub struct Settled<'s> {
     pub edge: Option<&'s EdgePose>,
     /// The solve met an unstable equilibrium and left it: the frame may have several equilibria.
     pub multi_stable: bool,
+    /// Error of the grid in the compared coordinates of each point, m, or empty.
+    pub correction: &'s [f64],
 }
 
 /// A gap wider than this multiple of the widest gap between frames is not bridged: frames are rarely spaced evenly.
@@ -170,6 +172,7 @@ impl<'a> Equilibria<'a> {
             x: &state.x,
             edge: state.edge.as_ref(),
             multi_stable: state.escaped,
+            correction: &state.correction.points,
         })
     }
 
@@ -183,8 +186,13 @@ impl<'a> Equilibria<'a> {
             if result.status == Status::Converged {
                 self.frames.push((replica, frame));
                 let of_forces = self.task.objective == Objective::Forces;
-                let correction =
-                    result.state.correction.iter().filter(|_| of_forces).chain(std::iter::repeat(&0.0));
+                let correction = result
+                    .state
+                    .correction
+                    .values
+                    .iter()
+                    .filter(|_| of_forces)
+                    .chain(std::iter::repeat(&0.0));
                 forces.push(
                     result
                         .forces

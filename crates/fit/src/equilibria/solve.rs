@@ -208,7 +208,7 @@ impl<'a> Equilibria<'a> {
             Balance::new(solver, cloth, frame, x, edge, &clip_forces, values, &columns, &sensitivity);
         let observations = self.observations(frame);
         result.simulated = observations.iter().map(|observation| observation.simulated(&balance)).collect();
-        let (mut rows, own) = self.rows(replica, &observations, &balance, values, &state.correction);
+        let (mut rows, own) = self.rows(replica, &observations, &balance, values, &state.correction.values);
         let Some(overhang) = &frame.overhang else {
             if own.ncols() > 0 {
                 // As if the poses were those measured.

@@ -7,6 +7,15 @@ use cloth_sim::material::Curves;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
+/// Error of the grid in one frame, added to what is simulated.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Correction {
+    /// Of each compared value; empty if not known.
+    pub(super) values: Vec<f64>,
+    /// Off a table, of each point's compared coordinates, m.
+    pub(super) points: Vec<f64>,
+}
+
 /// The equilibrium of one frame at given control values.
 #[derive(Debug, Clone, Default)]
 pub(super) struct State {
@@ -26,9 +35,8 @@ pub(super) struct State {
     pub(super) own_sensitivity: DMatrix<f64>,
     /// Number of the frame's own unknowns that its measurements determine.
     pub(super) eliminated: usize,
-    /// Error of the grid, added to the simulated values: as many as observations, or none. Renewed by
-    /// [`Equilibria::correct`] and constant in between, so that the objective stays one function.
-    pub(super) correction: Arc<Vec<f64>>,
+    /// Renewed by [`Equilibria::correct`] and constant in between, so that the objective stays one function.
+    pub(super) correction: Arc<Correction>,
     /// The equilibrium on the finer grid, and what of it was interpolated, where it was corrected by one.
     pub(super) finer: Option<Arc<[Vec<f64>; 2]>>,
 }

@@ -182,7 +182,7 @@ pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>])
     // Frames, each with the distance of its shape, and with its rise by the slope at a table's edge.
     let [mut shapes, mut rises]: [Vec<Vec<(usize, f64)>>; 2] = Default::default();
     for (settled, simulated) in simulation.settled().zip(forces) {
-        let Settled { replica, frame, x, edge, multi_stable } = settled;
+        let Settled { replica, frame, x, edge, multi_stable, correction } = settled;
         let at = reports.iter().position(|report| report.name == replica.name).unwrap_or_else(|| {
             let grid = &replica.specimen.grid;
             reports.push(SequenceReport {
@@ -242,11 +242,15 @@ pub(crate) fn sequence_reports(simulation: &Equilibria<'_>, forces: &[Vec<f64>])
             });
         }
         // If a frame has several equilibria, the distance to one of them means nothing (Miguel et al. 2012, §6).
-        let compared = frame.points.iter().filter(|_| !multi_stable);
+        let compared = frame.points.iter().enumerate().filter(|_| !multi_stable);
         let (mut squares, mut seen) = (0.0, 0);
-        for point in compared {
-            let off = |axis: usize| (point.position[axis] - point.placed(x, edge, axis)).powi(2);
-            squares += frame.compared_axes().iter().map(|&axis| off(axis)).sum::<f64>();
+        let axes = frame.compared_axes();
+        for (index, point) in compared {
+            let off = |(number, &axis): (usize, &usize)| {
+                let of_grid = correction.get(axes.len() * index + number).unwrap_or(&0.0);
+                (point.position[axis] - point.placed(x, edge, axis) - of_grid).powi(2)
+            };
+            squares += axes.iter().enumerate().map(off).sum::<f64>();
             seen += 1;
         }
         positions[at].0 += squares;

@@ -41,6 +41,7 @@ pub use force_component::ForceComponent;
 pub use merging::Merging;
 pub use overhang::Overhang;
 pub use parts::{Parts, TableHold};
+pub(crate) use point::lagrange;
 pub use point::{MeasuredPoint, Term};
 pub use skip::{Skip, SkippedFrame};
 

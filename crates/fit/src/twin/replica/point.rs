@@ -62,7 +62,7 @@ impl MeasuredPoint {
 
 /// Weights of a polynomial through equidistant values, at a place in units of their distance: the four nearest values,
 /// or as many as there are (Lagrange).
-pub(super) fn lagrange(place: f64, values: usize) -> Vec<(usize, f64)> {
+pub(crate) fn lagrange(place: f64, values: usize) -> Vec<(usize, f64)> {
     let order = values.min(4);
     let first = (place.floor() - 1.0).clamp(0.0, (values - order) as f64) as usize;
     let weight = |i: usize| -> f64 {
