@@ -344,6 +344,24 @@ fn curves_for_a_mesh_are_validated_on_it() {
     let warning = "these curves hold only on cells of 10 mm";
     assert!(!validate(&[]).contains(warning));
     assert!(validate(&["--nodes", "13x13"]).contains(warning));
+    // Curves of the continuum and of another mesh would answer for each other's errors.
+    let elsewhere = folder.path().join("elsewhere");
+    let refused = |more: &[&str]| {
+        let output = run(&[&["shear", &denim, "--out", text(&elsewhere)], more].concat());
+        assert_eq!(output.status.code(), Some(3), "{}", said(&output)[1]);
+        said(&output)[1].clone()
+    };
+    let known = refused(&["--known", text(&material)]);
+    assert!(known.contains("provenance.for_mesh_m: found curves of a mesh with cells of 10 mm"), "{known}");
+    let odd = text(&material).replace("material.json", "odd.json");
+    fs::write(
+        &odd,
+        fs::read_to_string(&material).unwrap().replace("\"for_mesh_m\": 0.01", "\"for_mesh_m\": -1"),
+    )
+    .unwrap();
+    assert!(refused(&["--known", &odd]).contains("expected the side of a mesh's cells"));
+    let refused = run(&["stretch", &denim, "--for-mesh", "30", "--out", text(&elsewhere)]);
+    assert!(said(&refused)[1].contains("a whole number within 10 %"), "{}", said(&refused)[1]);
     let refused = run(&["stretch", &denim, "--for-mesh", "10", "--nodes", "9x9"]);
     assert!(said(&refused)[1].contains("cannot be used with"));
     for side in ["0", "-3", "much"] {

@@ -11,6 +11,9 @@ const NOISE: f64 = 6.0;
 /// Allowed distance as a share of the specimen size; less hardly changes a strain.
 const SHARE: f64 = 2e-3;
 
+/// One in so many of a clip's vertices may be mis-tracked: the farthest do not count.
+const MISTRACKED: usize = 10;
+
 /// Allowed relative difference between the clip motion in poses and in shapes, which changes no curve; a number of
 /// standard deviations is allowed in addition.
 const SAME_MOTION: f64 = 5e-3;
@@ -107,7 +110,8 @@ fn middles(sequence: &Sequence, frame: usize, clip: usize) -> Option<Middles> {
     (!seen.is_empty()).then_some(Middles { places, vertices: seen.len() })
 }
 
-/// Root mean square distance between the observed vertices of a clip and its pose, m; `None` if none was observed.
+/// Root mean square distance between the observed vertices of a clip, but the farthest, and its pose, m; `None` if none was
+/// observed.
 fn apart(sequence: &Sequence, frame: usize, clip: usize) -> Option<f64> {
     let frame = &sequence.frames[frame];
     let (positions, pose) = (frame.positions.as_ref()?, frame.poses.get(clip)?);
@@ -115,6 +119,9 @@ fn apart(sequence: &Sequence, frame: usize, clip: usize) -> Option<f64> {
         .vertices
         .iter()
         .map(|&vertex| -> Vector3<f64> { positions[vertex] - moved(pose, &sequence.mesh.positions[vertex]) });
-    let squares: Vec<f64> = offsets.map(|offset| offset.norm_squared()).filter(|s| s.is_finite()).collect();
+    let mut squares: Vec<f64> =
+        offsets.map(|offset| offset.norm_squared()).filter(|s| s.is_finite()).collect();
+    squares.sort_by(f64::total_cmp);
+    squares.truncate(squares.len() - squares.len() / MISTRACKED);
     (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }

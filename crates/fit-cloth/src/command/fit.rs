@@ -122,6 +122,22 @@ fn read_known(path: &Path, folder: &Path, flags: &FitFlags) -> Result<MaterialFi
                 format!("{}, as --model says (--model {}, or another --known)", settings.model, file.model);
             return refuse("model", file.model.to_string(), expected);
         }
+        if file.provenance.for_mesh_m != settings.for_mesh {
+            let of = |side: Option<f64>| {
+                side.map_or("the continuum".into(), |side| format!("a mesh with cells of {} mm", 1e3 * side))
+            };
+            let remedy = match file.provenance.for_mesh_m {
+                Some(side) => format!("--for-mesh {}", 1e3 * side),
+                None => "no --for-mesh".into(),
+            };
+            let expected =
+                format!("curves of {}, as this fit ({remedy}, or another --known)", of(settings.for_mesh));
+            return refuse(
+                "provenance.for_mesh_m",
+                format!("curves of {}", of(file.provenance.for_mesh_m)),
+                expected,
+            );
+        }
         if settings.variant.is_isotropic() && !file.variant.is_isotropic() {
             let expected = format!(
                 "one with shared weft and warp curves, as --variant {} (--variant {}, or another --known)",

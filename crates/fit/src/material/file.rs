@@ -29,6 +29,9 @@ use std::path::Path;
 /// The file format. Version 2: notices may carry remedies.
 pub const SCHEMA: Schema = Schema::new("material", &[|_| ()]);
 
+/// Sides of a mesh's cells, m.
+const MESHES: std::ops::RangeInclusive<f64> = 1e-5..=1.0;
+
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -146,11 +149,15 @@ impl MaterialFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read or is not a material file, with line and field.
+    /// A file that cannot be read or is not a material file, with line and field; a side of cells that no mesh has.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
         let file: Self = parse_version(path, &text, &SCHEMA)?;
         file.named_curves().map_err(|defect| defect.at(path, &text))?;
+        if let Some(side) = file.provenance.for_mesh_m.filter(|side| !MESHES.contains(side)) {
+            let expected = "the side of a mesh's cells, 1e-5 to 1 m";
+            return Err(Error::input(path, None, "provenance.for_mesh_m", side.to_string(), expected));
+        }
         Ok(file)
     }
 

@@ -18,6 +18,9 @@ use cloth_sim::error::Result;
 /// Residuals up to this share of the compared values are rounding; none is better than another.
 const ROUNDING: f64 = 1e-12;
 
+/// Gain of a step that ends a level on the way to the mean.
+const ROUGH: f64 = 1e-4;
+
 /// A curve with one number of control points is corrected for the grid at most so often.
 const MOST_CORRECTIONS: usize = 4;
 
@@ -65,20 +68,19 @@ pub fn grow(
     let mut levels = Vec::new();
     let mut kept: Option<(Unknowns, Outcome, LinearConstraints)> = None;
     let rule = settings.growth;
-    // Forces are hardly wrong for the grid: their correction waits for the level that is kept. The first level's of positions
-    // is as good as the curve is; each further one starts from the one before.
-    let on_the_way = simulation.task().objective == Objective::Positions;
+    // Forces are hardly wrong for the grid: their correction waits for the level that is kept. Positions are corrected on the
+    // way, which ends with the mean or with a last fit: up to there a rough minimum tells whether a level pays.
+    let on_the_way = simulation.is_corrected() && simulation.task().objective == Objective::Positions;
+    let mut rough = settings.clone();
+    if on_the_way {
+        rough.outer.gain_tolerance = rough.outer.gain_tolerance.max(ROUGH);
+    }
     let mut unknowns = simulation.unknowns().clone();
     let mut tries = 0;
     loop {
         let points = points_of(&unknowns);
-        let corrections = usize::from(on_the_way && levels.is_empty());
-        if on_the_way && !levels.is_empty() {
-            simulation.set_unknowns(unknowns.clone());
-            simulation.correct();
-        }
         let (outcome, domain, level) =
-            fit_level(simulation, &unknowns, corrections, settings, lowest_tangents, watch)?;
+            fit_level(simulation, &unknowns, usize::from(on_the_way), &rough, lowest_tangents, watch)?;
         levels.push(level);
         unknowns = unknowns.with_values(&outcome.point)?;
         let felt = (&outcome.jacobian * &outcome.point).norm() >= FELT * outcome.residual.norm();

@@ -196,10 +196,15 @@ impl Replica {
             }
         }
         if replica.frames.is_empty() {
+            let why = replica.skipped.iter().map(|skipped| skipped.skip).find(|skip| !skip.is_rest());
+            let why = why.map_or(String::new(), |skip| format!(" ({skip})"));
             return Err(Error::geometry(
                 &sequence.name,
-                "no frame in which the specimen is deformed and measured",
-                "clips that move apart, with their forces (clips.csv, forces.csv), or shapes with an overhang (positions.npy)",
+                format!("no frame in which the specimen is deformed and measured{why}"),
+                match sequence.clips.is_empty() {
+                    true => "shapes with an overhang (positions.npy), on cells that are not too long",
+                    false => "clips that move apart, with their forces (clips.csv, forces.csv)",
+                },
             ));
         }
         Ok(replica)

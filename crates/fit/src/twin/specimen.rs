@@ -16,6 +16,9 @@ use cloth_data::rectangle::{Rectangle, bounds};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use nalgebra::{Isometry3, Vector2, Vector3};
 
+/// Cells of a given side may differ from it by this share.
+const ALIKE: f64 = 0.1;
+
 /// Most nodes along a side.
 pub(crate) const MOST_NODES: usize = 1000;
 
@@ -47,7 +50,7 @@ pub enum GridSize {
     NearSquare,
     /// Columns and rows.
     Nodes([usize; 2]),
-    /// Side of a cell, m; at least two cells a side.
+    /// Side of a cell within 10 %, m; at least two cells a side.
     Cell(f64),
 }
 
@@ -57,7 +60,8 @@ impl GridSize {
         match self {
             Self::NearSquare => near_square(width, height, diagonals),
             Self::Nodes(nodes) => nodes,
-            Self::Cell(side) => [width, height].map(|length| (length / side).round().max(2.0) as usize + 1),
+            Self::Cell(side) => [width, height]
+                .map(|length| (length / side).round().clamp(2.0, MOST_NODES as f64) as usize + 1),
         }
     }
 }
@@ -80,7 +84,7 @@ impl Specimen {
     /// rigidly, and the grid's border lies on the bar's edge, wherever that is.
     ///
     /// # Errors
-    /// A rest mesh that is not a flat rectangle; too few nodes; cells too small for it.
+    /// A rest mesh that is not a flat rectangle; too few nodes; cells too small for it, or no number of which fills it.
     pub fn new(sequence: &Sequence, cells: &Cells) -> Result<Self> {
         let Cells { size, diagonals, refinement, to_clips } = *cells;
         let mechanics = |source| Error::Mechanics { context: sequence.name.clone(), source };
@@ -95,6 +99,20 @@ impl Specimen {
                 &sequence.name,
                 found,
                 format!("at most {MOST_NODES} a side (larger cells)"),
+            ));
+        }
+        let cells = [width / (columns - 1) as f64, height / (rows - 1) as f64];
+        if let GridSize::Cell(side) = size
+            && cells.iter().any(|cell| (cell / side - 1.0).abs() > ALIKE)
+        {
+            let [width, height, side] = [width, height, side].map(|length| 1e3 * length);
+            return Err(Error::geometry(
+                &sequence.name,
+                format!("{width:.1} mm × {height:.1} mm of free cloth for cells of {side} mm"),
+                format!(
+                    "at least two cells a side, and a whole number within 10 % (--for-mesh {:.2})",
+                    1e3 * cells[0].min(cells[1])
+                ),
             ));
         }
         let counts = [columns, rows].map(|nodes| refinement * nodes.saturating_sub(1) + 1);

@@ -144,7 +144,7 @@ impl Overhang {
             let own = specimen.grid.cell()[along];
             cells = (length / own + 0.5).floor() as usize;
             if cells < FEWEST_OWN_CELLS {
-                return Ok(Err(Skip::FewPoints { seen: hanging.len() }));
+                return Ok(Err(Skip::FewCells { cells }));
             }
             edge = sheet.length - (cells as f64 - 0.5) * own;
             hanging.retain(|&index| seen[index].s > edge);

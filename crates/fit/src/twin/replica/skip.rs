@@ -20,6 +20,11 @@ pub enum Skip {
         /// Their number.
         seen: usize,
     },
+    /// Too few cells of the given mesh past the edge.
+    FewCells {
+        /// Their number.
+        cells: usize,
+    },
 }
 
 impl Skip {
@@ -37,6 +42,9 @@ impl fmt::Display for Skip {
             Self::NoShape => f.write_str("no shape"),
             Self::NothingHangsOver => f.write_str("nothing hangs over the edge"),
             Self::FewPoints { seen } => write!(f, "only {seen} points seen past the edge"),
+            Self::FewCells { cells } => {
+                write!(f, "only {cells} cells of the mesh past the edge, of at least 4")
+            }
         }
     }
 }
