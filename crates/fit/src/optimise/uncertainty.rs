@@ -350,9 +350,14 @@ impl Covariance {
         let (Some(_), Some(quantile)) = (self.half_band(weights), self.quantile) else {
             return BTreeMap::new();
         };
-        let half =
-            |matrix: &DMatrix<f64>| quantile * (weights.transpose() * matrix * weights)[0].max(0.0).sqrt();
-        self.parts.iter().map(|(&source, matrix)| (source, half(matrix))).collect()
+        let variance = |matrix: &DMatrix<f64>| (weights.transpose() * matrix * weights)[0];
+        // Of errors along one direction another source can take no more than there are.
+        let lacking = self.parts.get(&Source::Noise).map_or(0.0, |noise| variance(noise).min(0.0));
+        let half = |(&source, matrix): (&Source, &DMatrix<f64>)| {
+            let taken = if source == Source::ClipPoses { lacking } else { 0.0 };
+            (source, quantile * (variance(matrix) + taken).max(0.0).sqrt())
+        };
+        self.parts.iter().map(half).collect()
     }
 
     /// Half-width of the 95 % band of Σ wᵢkᵢ; `None` if the data do not see it, or leave no degrees of freedom.

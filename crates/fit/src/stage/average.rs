@@ -21,7 +21,7 @@ const COURSE: usize = 3;
 /// fro: after so many steps it is close enough, or there is none.
 const MEAN_FOUND: f64 = 0.05;
 const CLOSE: f64 = 0.5;
-const MOST_MEANS: usize = 8;
+const MOST_MEANS: usize = 16;
 
 /// On the way to the mean positions are corrected for the grid at every step; forces, which the grid hardly changes, once
 /// the curve moves by less than this share, and again if it has moved by more since.
