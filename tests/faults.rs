@@ -107,7 +107,12 @@ fn end(clean: &Clean, set: &MeasurementSet) -> End {
     let mut end = End::NotGreen;
     for stage in report.last_stages().filter(|stage| of_stage(stage, &report.notices).grade == Grade::Green) {
         for &component in &stage.components {
-            let right = clean.report.stage(component).map(|stage| &*stage.curve.samples);
+            let reference = clean.report.stage(component);
+            // What is not green without a fault is no reference.
+            if reference.is_some_and(|stage| of_stage(stage, &clean.report.notices).grade != Grade::Green) {
+                continue;
+            }
+            let right = reference.map(|stage| &*stage.curve.samples);
             match (off(&stage.curve.samples, right.unwrap_or_default()), &end) {
                 (Some(off), End::Wrong(_, most)) if off <= *most => {}
                 (Some(off), _) => end = End::Wrong(component, off),
