@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use cloth_data::frame::Kind;
-use cloth_data::io::read_set;
+use cloth_data::io::{read_set, write_set};
 use cloth_fit::judge::prediction::predict;
 use cloth_fit::stage::{Settings, Watch};
 use cloth_sim::curve::StiffnessCurve;
@@ -362,10 +362,28 @@ fn curves_for_a_mesh_are_validated_on_it() {
     assert!(refused(&["--known", &odd]).contains("expected the side of a mesh's cells"));
     let refused = run(&["stretch", &denim, "--for-mesh", "30", "--out", text(&elsewhere)]);
     assert!(said(&refused)[1].contains("a whole number within 10 %"), "{}", said(&refused)[1]);
+    let refused = run(&["bend", &denim, "--for-mesh", "25", "--out", text(&elsewhere)]);
+    assert!(
+        said(&refused)[1].contains("cells of the mesh past the edge, of at least 4"),
+        "{}",
+        said(&refused)[1]
+    );
     let refused = run(&["stretch", &denim, "--for-mesh", "10", "--nodes", "9x9"]);
     assert!(said(&refused)[1].contains("cannot be used with"));
     for side in ["0", "-3", "much"] {
         let refused = run(&["stretch", &denim, "--for-mesh", side]);
         assert_eq!(refused.status.code(), Some(2), "{}", said(&refused)[1]);
     }
+}
+
+#[test]
+fn a_bias_strip_that_hangs_by_unknown_shear_is_amber() {
+    let folder = tempfile::tempdir().unwrap();
+    let [set, out] = ["set", "out"].map(|name| folder.path().join(name));
+    let mut alone = read_set(Path::new(&fixture("cotton-denim"))).unwrap();
+    alone.sequences.retain(|sequence| sequence.kind == Kind::BendBias);
+    write_set(&set, &alone).unwrap();
+    let output = run(&["bend", text(&set), "--nodes", "9x9", "--out", text(&out)]);
+    let told = "bend-diagonal: AMBER: a sheet cut on the bias lengthens under its weight by its shear";
+    assert!(said(&output)[0].contains(told), "{}", said(&output)[0]);
 }

@@ -86,6 +86,31 @@ fn a_frame_that_hangs_otherwise_than_the_others_is_doubted() {
 }
 
 #[test]
+fn a_few_mistracked_vertices_of_a_clip_do_not_contradict_its_pose() {
+    for (moved, sound) in [(1, true), (2, true), (8, false), (25, false)] {
+        let notices = noticed("stretch-weft", |_, sequence| {
+            let held = sequence.clips[0].vertices.clone();
+            assert_eq!(held.len(), 25);
+            let places = sequence.frames[5].positions.as_mut().unwrap();
+            held[..moved].iter().for_each(|&vertex| places[vertex].z += 0.02);
+        });
+        assert_eq!(notices.iter().all(|notice| notice.severity != Severity::Refusal), sound, "{notices:?}");
+    }
+}
+
+#[test]
+fn the_assumed_noise_of_clips_is_told_where_there_are_any() {
+    let untold = |_: &mut Fabric, sequence: &mut Sequence| {
+        sequence.noise.as_mut().unwrap().clip_m = None;
+    };
+    let notices = noticed("stretch-weft", untold);
+    let [notice] = &notices[..] else { panic!("{notices:?}") };
+    assert_eq!(notice.severity, Severity::Remark);
+    assert!(notice.to_string().contains("taken as that of a vertex, 0.000075 m"), "{notice}");
+    assert_eq!(noticed("bend-weft", untold), []);
+}
+
+#[test]
 fn poses_of_another_scale_than_shapes_are_doubted_by_how_much() {
     for (factor, way) in [(0.9, "farther"), (1.1, "less far")] {
         let notices = noticed("stretch-weft", |_, sequence| {

@@ -3,6 +3,7 @@
 use super::interventions::interventions;
 use super::list::list;
 use cloth_fit::material::Material;
+use cloth_fit::twin::specimen::is_alike;
 use cloth_scene::drape::Drape;
 use cloth_scene::droop::Droop;
 use cloth_scene::scene::Scene;
@@ -43,9 +44,6 @@ pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -
     format!("{text}\n{}{}\n", interventions(&simulation.interventions), verdict(simulation))
 }
 
-/// Cells may differ by this share from those that curves are for.
-const ALIKE: f64 = 0.1;
-
 /// A warning if curves for one mesh are simulated on another one.
 ///
 /// * `side` — of the cells that the curves are for, m
@@ -53,7 +51,7 @@ pub fn other_mesh(side: f64, mesh: &Mesh) -> Option<String> {
     let area: f64 = (0..mesh.triangles.len()).map(|triangle| mesh.double_area(triangle)).sum();
     // A cell is two triangles.
     let own = (area / mesh.triangles.len() as f64).sqrt();
-    ((own / side - 1.0).abs() > ALIKE).then(|| {
+    (!is_alike(own, side)).then(|| {
         format!(
             "the curves make up for the error of cells of {} mm, this sheet's are {:.1} mm (a fit without --for-mesh, or for them)",
             1e3 * side,
@@ -118,4 +116,19 @@ fn at_rest(descent: &Descent) -> String {
         text += " An unstable equilibrium was met and left: another shape is equally possible.";
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::mesh::{Diagonals, Grid};
+
+    #[test]
+    fn curves_for_other_cells_are_told() {
+        for (diagonals, columns) in [(Diagonals::Alternating, 21), (Diagonals::Forward, 20)] {
+            let mesh = Grid { columns, rows: 11, width: 0.2, height: 0.1, diagonals }.mesh().unwrap();
+            assert_eq!(other_mesh(0.01, &mesh), None);
+            assert!(other_mesh(0.02, &mesh).unwrap().contains("cells of 20 mm, this sheet's are 10."));
+        }
+    }
 }

@@ -24,7 +24,7 @@ const SAMPLES: usize = 4;
 const OTHER_SHAPE: f64 = 0.5;
 
 /// Tolerance of equilibria whose forces are compared: their difference is a hundredth of these. Shapes need the full one.
-const EXACT: Tolerance = Tolerance::Relative(1e-5);
+const OF_FORCES: Tolerance = Tolerance::Relative(1e-5);
 
 /// The correction of one frame between clips.
 struct Corrected {
@@ -147,7 +147,7 @@ impl<'a> Equilibria<'a> {
         let mut solver = Solver::new(replica.cloth(frame));
         let mut settings = self.task.settings;
         if self.task.objective == Objective::Forces {
-            settings.tolerance = EXACT;
+            settings.tolerance = OF_FORCES;
         }
         let found = solver.solve(curves, x, &settings);
         self.meter.add(&found);

@@ -444,6 +444,24 @@ mod tests {
     }
 
     #[test]
+    fn sources_take_no_more_than_there_is() {
+        let (jacobian, _) = line(60);
+        let scatter = Scatter::new(&DVector::zeros(60), &jacobian, 2, NoiseSource::Declared(0.2));
+        let covariance = Covariance::new(&jacobian, &scatter);
+        let weights = DVector::from_vec(vec![1.0, 0.5]);
+        let whole = covariance.half_band(&weights).unwrap();
+        for share in [0.3, 1.4] {
+            let mut covariance = covariance.clone();
+            let part = share * &covariance.matrix;
+            covariance.attribute(Source::ClipPoses, part);
+            let parts = covariance.half_bands_by_source(&weights);
+            let together = parts.values().map(|half| half * half).sum::<f64>().sqrt();
+            assert!((together / whole - 1.0).abs() < 1e-9, "{share}: {parts:?}");
+            assert!((parts[&Source::ClipPoses] / whole - share.min(1.0).sqrt()).abs() < 1e-9, "{parts:?}");
+        }
+    }
+
+    #[test]
     fn a_smooth_misfit_is_seen_beside_the_noise() {
         let mut rng = StdRng::seed_from_u64(5);
         let (jacobian, tracks) = line(60);

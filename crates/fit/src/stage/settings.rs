@@ -4,7 +4,7 @@ use super::growth_rule::GrowthRule;
 use crate::equilibria::SolveStart;
 use crate::optimise::gauss_newton::{Globalisation, Options};
 use crate::twin::replica::TableHold;
-use crate::twin::specimen::GridSize;
+use crate::twin::specimen::{GridSize, MOST_NODES};
 use cloth_data::error::{Error, Result};
 use cloth_sim::equilibrium;
 use cloth_sim::material::{Component, Compression, Model};
@@ -257,7 +257,7 @@ impl Settings {
             }
         }
         match self.nodes {
-            Some(nodes) if nodes.iter().any(|side| !(3..=1000).contains(side)) => {
+            Some(nodes) if nodes.iter().any(|side| !(3..=MOST_NODES).contains(side)) => {
                 setting("nodes", format!("{}x{}", nodes[0], nodes[1]), "3 to 1000 nodes a side")
             }
             _ => Ok(()),
