@@ -1,4 +1,4 @@
-//! Runs the commands of the README in order.
+//! Runs the commands of the README in order; the rows of tables that it shows are rows that they print.
 
 #![allow(clippy::unwrap_used)]
 
@@ -42,7 +42,7 @@ fn the_tour_can_be_taken() {
         .flatten()
         .filter_map(|line| command(line))
         .collect();
-    let mut taken = Vec::new();
+    let (mut taken, mut printed) = (Vec::new(), String::new());
     // The first command must still run after all others.
     for arguments in commands.iter().chain(&commands[..1]) {
         let output = Command::new(env!("CARGO_BIN_EXE_fit-cloth"))
@@ -52,6 +52,14 @@ fn the_tour_can_be_taken() {
             .unwrap();
         assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
         taken.push(arguments[0].clone());
+        printed += &String::from_utf8_lossy(&output.stdout);
+    }
+    let is_result = |block: &&Vec<String>| block.first().is_some_and(|line| line.starts_with("sequence "));
+    let shown: Vec<&String> =
+        blocks.iter().filter(is_result).flatten().filter(|line| !line.is_empty()).collect();
+    assert!(shown.len() >= 4);
+    for row in shown {
+        assert!(printed.lines().any(|line| line == row), "no command prints {row}");
     }
     for expected in
         ["fit", "import", "stretch", "compare", "validate", "report", "rig", "simulate", "check", "curve"]
