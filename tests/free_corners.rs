@@ -10,6 +10,7 @@
 //! most 0.4 % (relative L2 over the visited range), without noise.
 
 use cloth_data::frame::MeasurementSet;
+use cloth_data::rig::with_noise;
 use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::optimise::uncertainty::Source;
 use cloth_fit::stage::knowledge::Knowledge;
@@ -18,6 +19,7 @@ use cloth_sim::curve::{NegativeStrain, StiffnessCurve, equidistant};
 use cloth_sim::material::{Component, Curves};
 use fit_cloth_tests::picture_frame::{PictureFrame, SIDE};
 use fit_cloth_tests::{coverage, own_mesh, stress_error};
+use rayon::prelude::*;
 
 const NODES: usize = 97;
 
@@ -80,13 +82,14 @@ fn fitted(set: &MeasurementSet, settings: &Settings) -> [f64; 2] {
     [stress_error(&stage.curve.samples, &law), coverage(&stage.curve.samples, &law)]
 }
 
-/// Error allowed with five points and with nine. As the grid gets finer the force on clips that end at 5 % falls like
-/// h^0.75, by 0.15 % still from 97 to 145 nodes: a correction of 25 nodes cannot meet 97 exactly.
+/// Error allowed with five points and with nine.
+const ALLOWED: [f64; 2] = [0.004, 0.0015];
+
 #[test]
 fn free_corners_are_fitted_within_their_bands() {
-    for (share, allowed) in [(0.02, [0.004, 0.0015]), (0.033, [0.004, 0.0025]), (0.05, [0.004, 0.004])] {
+    for share in [0.02, 0.033, 0.05] {
         let set = measured(share, 24);
-        for (points, allowed) in [5, 9].into_iter().zip(allowed) {
+        for (points, allowed) in [5, 9].into_iter().zip(ALLOWED) {
             let [error, inside] = fitted(&set, &Settings { points, ..Settings::default() });
             println!(
                 "clips from {:.1} %, {points} points: {:.3} %, inside {inside:.2}",
@@ -96,6 +99,37 @@ fn free_corners_are_fitted_within_their_bands() {
             assert!(error < allowed && inside > 0.6, "{share} {points}: {error} {inside}");
         }
     }
+}
+
+/// Coverage over many seeds, of noise of vertices, forces and, in half of the fits, clip poses.
+#[test]
+#[ignore = "release: 120 fits"]
+fn bands_of_free_corners_hold_the_truth_in_full() {
+    let mut sound = true;
+    let mut all = Vec::new();
+    for share in [0.02, 0.033, 0.05] {
+        let exact = measured(share, 24);
+        for clip_noise in [false, true] {
+            let of_seed = |seed: u64| {
+                let set = with_noise(&exact, 1.0, 1.0, clip_noise, seed);
+                let report = report(&set, &Settings::default());
+                let samples = &report.stage(Component::Shear).unwrap().curve.samples;
+                [stress_error(samples, &law), coverage(samples, &law)]
+            };
+            let found: Vec<[f64; 2]> = (1..=20).into_par_iter().map(of_seed).collect();
+            let mean = |part: usize| found.iter().map(|pair| pair[part]).sum::<f64>() / found.len() as f64;
+            let [error, inside] = [mean(0), mean(1)];
+            println!(
+                "clips from {share}, clip noise {clip_noise:5}: error {:.3} %, inside {inside:.3}",
+                100.0 * error
+            );
+            sound &= inside >= 0.88;
+            all.push(inside);
+        }
+    }
+    let pooled = all.iter().sum::<f64>() / all.len() as f64;
+    println!("pooled: {pooled:.3} inside");
+    assert!(sound && (0.92..=1.0).contains(&pooled));
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod elimination;
 mod frames;
 mod meter;
 mod observation;
+mod pose_prior;
 mod residual;
 mod solve;
 mod state;

@@ -142,6 +142,12 @@ impl<'a> Equilibria<'a> {
         replica.clip_poses.as_ref().filter(|_| found && self.noise_is_known())
     }
 
+    /// True if shapes help to find the poses of clips.
+    pub fn finds_clip_poses(&self) -> bool {
+        self.settled()
+            .any(|settled| self.clip_poses(settled.replica).is_some() && !settled.frame.points.is_empty())
+    }
+
     /// Converts residuals to newtons or metres: their noise unit (the mean, if sequences differ), or 1.
     pub fn unit(&self) -> f64 {
         let scales = self.replicas.iter().map(|replica| self.scale(replica));

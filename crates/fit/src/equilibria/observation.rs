@@ -144,6 +144,11 @@ impl<'a> Balance<'a> {
         Self { cloth, frame, x, edge, clip_forces, values, sensitivity, force_slopes }
     }
 
+    /// The frame.
+    pub(super) fn frame(&self) -> &'a ReplicaFrame {
+        self.frame
+    }
+
     /// Number of the frame's own unknowns.
     pub(super) fn owned(&self) -> usize {
         self.edge.map_or(self.force_slopes.len() - self.values, |_| EdgePose::UNKNOWNS)
@@ -173,16 +178,25 @@ impl Observation {
                 let point = point_of(balance.frame, point, merged);
                 let mut columns = balance.sensitivity.chunks_exact(balance.cloth.unknowns().max(1));
                 by_value.iter_mut().zip(&mut columns).for_each(|(d, dx)| *d = point.of_unknowns(dx, axis));
-                if let (Some(edge), Some(overhang), Some(by_slope)) =
-                    (balance.edge, &balance.frame.overhang, columns.next())
-                {
-                    own.fill(0.0);
-                    own[axis / 2] = point.place;
-                    own[2 + axis / 2] = point.across;
-                    // The held lines turn with the slope.
-                    own[4] = point.of_unknowns(by_slope, axis) + overhang.turned(point, edge.slope)[axis / 2];
-                }
+                let Some((edge, overhang)) = balance.edge.zip(balance.frame.overhang.as_ref()) else {
+                    own.iter_mut().zip(columns).for_each(|(d, dx)| *d = point.of_unknowns(dx, axis));
+                    return;
+                };
+                own.fill(0.0);
+                own[axis / 2] = point.place;
+                own[2 + axis / 2] = point.across;
+                // The held lines turn with the slope.
+                let by_slope = columns.next().map_or(0.0, |dx| point.of_unknowns(dx, axis));
+                own[4] = by_slope + overhang.turned(point, edge.slope)[axis / 2];
             }
+        }
+    }
+
+    /// The axis of a coordinate.
+    pub(super) fn axis(&self) -> Option<usize> {
+        match self.quantity {
+            Quantity::Force { .. } => None,
+            Quantity::Coordinate { axis, .. } => Some(axis),
         }
     }
 

@@ -211,16 +211,19 @@ impl<'a> Equilibria<'a> {
         let (mut rows, own) = self.rows(replica, &observations, &balance, values, &state.correction.values);
         let Some(overhang) = &frame.overhang else {
             if own.ncols() > 0 {
-                // As if the poses were those measured.
                 let at = DVector::from_column_slice(&state.clips);
+                let prior = self.pose_prior(replica, &balance, values, &at, &state.correction.points);
+                // As if the poses were the likeliest before the forces.
                 let eliminated = |mut rows: DMatrix<f64>, own: &DMatrix<f64>| {
-                    rows.set_column(0, &(rows.column(0) + own * &at));
-                    eliminate(rows, own, Prior::Unit)
+                    rows.set_column(0, &(rows.column(0) + own * (&at - &prior.mean)));
+                    let values = rows.columns(1, values) + own * &prior.by_value;
+                    rows.columns_mut(1, values.ncols()).copy_from(&values);
+                    eliminate(rows, &(own * &prior.spread), Prior::Unit)
                 };
                 let (way, by_own) = self.weighted(&rows, &own);
                 let found = eliminated(way, &by_own);
-                let step = &found.step - &at;
-                let removed = (by_own * &step).norm().hypot(step.norm());
+                let step = prior.errors(&found.step) - &at;
+                let removed = (by_own * &step).norm().hypot((&found.step - prior.deviations(&at)).norm());
                 let unfelt = UNFELT * (rows.nrows() as f64).sqrt();
                 if removed > FOUND * found.rows.column(0).norm() + unfelt && removed < least {
                     state.sensitivity = sensitivity;
@@ -228,7 +231,10 @@ impl<'a> Equilibria<'a> {
                 }
                 let bent = self.task.robust.map(|_| eliminated(rows, &own));
                 let Eliminated { rows: left, by_value, .. } = bent.unwrap_or(found);
+                let by_value = &prior.by_value + &prior.spread * by_value;
                 add_own(&mut sensitivity, values, unknowns, &by_value);
+                state.grid_through_poses = Some(&own * &prior.of_grid);
+                let own = own * &prior.spread;
                 (state.own_sensitivity, state.by_clips, rows) = (by_value, own, left);
             }
             state.sensitivity = sensitivity;

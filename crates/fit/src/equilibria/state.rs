@@ -4,7 +4,7 @@ use super::elimination::{Prior, eliminate};
 use crate::twin::replica::{EdgePose, Replica, ReplicaFrame};
 use cloth_sim::equilibrium::Status;
 use cloth_sim::material::Curves;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
 /// Error of the grid in one frame, added to what is simulated.
@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub(super) struct Correction {
     /// Of each compared value; empty if not known.
     pub(super) values: Vec<f64>,
-    /// Off a table, of each point's compared coordinates, m.
+    /// Of each point's compared coordinates, m; empty if not known.
     pub(super) points: Vec<f64>,
 }
 
@@ -29,8 +29,10 @@ pub(super) struct State {
     pub(super) edge: Option<EdgePose>,
     /// Errors of the clips' poses in standard deviations; empty if the poses are exact.
     pub(super) clips: Vec<f64>,
-    /// Derivative of the simulated values by these, in units of the noise.
+    /// Derivative of the simulated values, in units of the noise, by deviations of these from what else is known of them.
     pub(super) by_clips: DMatrix<f64>,
+    /// Change of the simulated values, in units of the noise, by clip poses that took the grid's error for their own.
+    pub(super) grid_through_poses: Option<DVector<f64>>,
     /// dν/dk of the frame's own unknowns: one column per control value.
     pub(super) own_sensitivity: DMatrix<f64>,
     /// Number of the frame's own unknowns that its measurements determine.

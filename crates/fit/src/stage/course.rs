@@ -171,11 +171,6 @@ fn simulate<'r>(
     Ok(simulation)
 }
 
-/// Share of the correction for the grid that may be left. An overhang errs by O(h²), and the next order is a small part;
-/// at the end of a clip strains are singular, the order is below one, and as much as was corrected is left.
-const LEFT_OFF_A_TABLE: f64 = 0.25;
-const LEFT_BETWEEN_CLIPS: f64 = 1.0;
-
 /// Uncertainty of a fitted curve.
 struct Judgement {
     scatter: Scatter,
@@ -216,14 +211,10 @@ fn judge(
         }
     }
     if simulation.is_corrected() && complete {
-        let left = match plan.objective {
-            Objective::Positions => LEFT_OFF_A_TABLE,
-            Objective::Forces => LEFT_BETWEEN_CLIPS,
-        };
-        let correction = simulation.correction();
-        if correction.len() == jacobian.nrows() {
-            let change = covariance.change(jacobian, &correction);
-            covariance.widen(Source::Grid, &(left * change));
+        let left = simulation.left_of_grid();
+        if left.len() == jacobian.nrows() {
+            let change = covariance.change(jacobian, &left);
+            covariance.widen(Source::Grid, &change);
         }
     }
     let groups = others.groups(&plan.components);

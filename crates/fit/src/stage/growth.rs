@@ -68,9 +68,11 @@ pub fn grow(
     let mut levels = Vec::new();
     let mut kept: Option<(Unknowns, Outcome, LinearConstraints)> = None;
     let rule = settings.growth;
-    // Forces are hardly wrong for the grid: their correction waits for the level that is kept. Positions are corrected on the
-    // way, which ends with the mean or with a last fit: up to there a rough minimum tells whether a level pays.
-    let on_the_way = simulation.is_corrected() && simulation.task().objective == Objective::Positions;
+    // Forces are hardly wrong for the grid: their correction waits for the level that is kept. Positions, and shapes that
+    // tell the poses of clips, are corrected on the way, which ends with the mean or with a last fit: up to there a rough
+    // minimum tells whether a level pays.
+    let shapes = simulation.task().objective == Objective::Positions || simulation.finds_clip_poses();
+    let on_the_way = simulation.is_corrected() && shapes;
     let mut rough = settings.clone();
     if on_the_way {
         rough.outer.gain_tolerance = rough.outer.gain_tolerance.max(ROUGH);

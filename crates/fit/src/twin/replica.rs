@@ -79,6 +79,10 @@ pub struct Replica {
     pub planar: bool,
     /// Errors of the clips' poses; `None` if these are exact.
     pub clip_poses: Option<ClipPoses>,
+    /// Order of the grid's error in the size of its cells: 1 where a clip ends within a side, else 2.
+    pub grid_order: i32,
+    /// Share of the nodes' observed places that are independent: of measured vertices to nodes, up to 1.
+    pub independent: f64,
     /// Standard deviation of a force component, N, if known.
     pub force_noise: Option<f64>,
     /// Standard deviation of a vertex coordinate, m, if known.
@@ -178,6 +182,8 @@ impl Replica {
             vertices_left_out: 0,
             planar: false,
             clip_poses: None,
+            grid_order: 2,
+            independent: (sequence.mesh.len() as f64 / specimen.mesh.len() as f64).min(1.0),
             areal_density: parts.areal_density,
             weight: gravity * parts.areal_density,
             force_noise: noise.and_then(|noise| noise.force_n),
@@ -313,6 +319,9 @@ impl Replica {
         if parts.flat {
             starts.iter_mut().for_each(|x| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 0.0));
         }
+        if grip.ends_within_a_side(&specimen.grid) {
+            self.grid_order = 1;
+        }
         self.clip_poses = ClipPoses::new(&grip, &specimen.mesh, clip_noise, self.planar);
         let held = grip
             .group_of
@@ -425,7 +434,8 @@ impl Replica {
                 Some(overhang) => overhang.points(&cloth),
                 None => node_points(&cloth, &self.specimen, observed.as_deref()),
             };
-            let merging = overhang.as_ref().map(|overhang| Box::new(overhang.merging(&points, &cloth)));
+            let merging =
+                overhang.as_ref().and_then(|overhang| overhang.merging(&points, &cloth)).map(Box::new);
             self.cloths.push(cloth);
             lengths[index] = length;
             self.frames.push(ReplicaFrame {

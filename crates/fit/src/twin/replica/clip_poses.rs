@@ -51,6 +51,11 @@ impl ClipPoses {
         (bodies.len() > 1).then_some(Self { bodies, noise, planar })
     }
 
+    /// Noise of a clip's place, m.
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.bodies.len() * if self.planar { 3 } else { 6 }

@@ -7,6 +7,7 @@ use cloth_data::frame::{Frame, Kind, Sequence};
 use cloth_data::kind::{Extension, Holding};
 use cloth_data::measure::effective_shear;
 use cloth_data::rectangle::bounds;
+use cloth_sim::mesh::Grid;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// The nodes held by clips, in groups: one per clip, and one for every pair of clips that share nodes, as two bars of
@@ -88,6 +89,25 @@ impl Grip {
             self.groups.len() - 1
         }));
         Ok(())
+    }
+
+    /// True if a clip ends within a side of the sheet: a line across that ends at a side is held nowhere else.
+    pub(super) fn ends_within_a_side(&self, grid: &Grid) -> bool {
+        let [columns, rows] = [grid.columns, grid.rows];
+        let side = |end: usize, inner: usize, along: usize, node: &dyn Fn(usize, usize) -> usize| {
+            let held = |i: usize, at: usize| self.group_of[node(i, at)].is_some();
+            (0..along).any(|i| {
+                let next = [i.checked_sub(1), Some(i + 1).filter(|&i| i < along)];
+                let ends = next.iter().flatten().any(|&next| !held(next, end));
+                held(i, end) && ends && !held(i, inner)
+            })
+        };
+        let upright = |i: usize, at: usize| grid.node(at, i);
+        let lying = |i: usize, at: usize| grid.node(i, at);
+        side(0, 1, columns, &lying)
+            || side(rows - 1, rows - 2, columns, &lying)
+            || side(0, 1, rows, &upright)
+            || side(columns - 1, columns - 2, rows, &upright)
     }
 
     /// Position of a held node in a frame of the sequence, in specimen coordinates.

@@ -9,6 +9,7 @@
 //! all points. What is left is noise alone, and measures it.
 
 use super::point::{MeasuredPoint, Term};
+use faer::{Mat, Side};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Relative eigenvalue of AᵀA below which the points do not see a combination.
@@ -33,10 +34,10 @@ pub struct Merging {
 }
 
 impl Merging {
-    /// Merges points.
+    /// Merges points; `None` without eigenvalues: each then counts by itself.
     ///
     /// * `lines` — a term of weight 1 for every line
-    pub(super) fn new(points: &[MeasuredPoint], lines: &[Term]) -> Self {
+    pub(super) fn new(points: &[MeasuredPoint], lines: &[Term]) -> Option<Self> {
         let nodes: Vec<usize> = lines.iter().map(|line| line.node).collect();
         let columns = nodes.len() + 2;
         let mut square = DMatrix::zeros(columns, columns);
@@ -48,15 +49,15 @@ impl Merging {
         }
         // Columns of one length: tilts are per metre.
         let scale = DVector::from_fn(columns, |i, _| f64::max(square[(i, i)], f64::MIN_POSITIVE).sqrt());
-        let scaled = DMatrix::from_fn(columns, columns, |i, j| square[(i, j)] / (scale[i] * scale[j]));
-        let eigen = scaled.symmetric_eigen();
-        let largest = eigen.eigenvalues.amax();
-        let seen: Vec<usize> = (0..columns).filter(|&i| eigen.eigenvalues[i] > UNSEEN * largest).collect();
-        let weight = |i: usize, j: usize| {
-            eigen.eigenvectors[(j, seen[i])] * eigen.eigenvalues[seen[i]].sqrt() * scale[j]
-        };
+        let scaled = Mat::from_fn(columns, columns, |i, j| square[(i, j)] / (scale[i] * scale[j]));
+        // nalgebra's is not finite where many lines have no point.
+        let eigen = scaled.self_adjoint_eigen(Side::Lower).ok()?;
+        let (values, vectors) = (eigen.S().column_vector(), eigen.U());
+        let largest = (0..columns).map(|i| values[i]).fold(0.0, f64::max);
+        let seen: Vec<usize> = (0..columns).filter(|&i| values[i] > UNSEEN * largest).collect();
+        let weight = |i: usize, j: usize| vectors[(j, seen[i])] * values[seen[i]].sqrt() * scale[j];
         let back = DMatrix::from_fn(seen.len(), columns, |i, j| {
-            eigen.eigenvectors[(j, seen[i])] / (eigen.eigenvalues[seen[i]].sqrt() * scale[j])
+            vectors[(j, seen[i])] / (values[seen[i]].sqrt() * scale[j])
         });
         let merged = |i: usize| MeasuredPoint {
             source: i,
@@ -74,7 +75,7 @@ impl Merging {
         for (point, position) in merging.points.iter_mut().zip(positions) {
             AXES.iter().zip(position).for_each(|(&axis, value)| point.position[axis] = value);
         }
-        merging
+        Some(merging)
     }
 
     /// Merges a value of every point and axis; returns those of the merged points, outward and up, and the sum of squares
@@ -129,7 +130,7 @@ mod tests {
     #[test]
     fn merged_points_have_the_same_squares() {
         let (points, lines) = points();
-        let merging = Merging::new(&points, &lines);
+        let merging = Merging::new(&points, &lines).unwrap();
         let x: Vec<f64> = (0..123).map(|i| 0.1 * (0.4 * i as f64).sin()).collect();
         let squares = |points: &[MeasuredPoint]| -> f64 {
             let of = |point: &MeasuredPoint, axis: usize| {
@@ -144,5 +145,21 @@ mod tests {
         assert_eq!(merging.points.len(), 13);
         assert_eq!(merging.freedom, 2 * (84 - 13));
         assert!(merging.left > 0.1 * all);
+    }
+
+    #[test]
+    fn most_lines_may_have_no_point() {
+        let term = |(node, weight): (usize, f64)| Term { node, weight, unknowns: [None; 3] };
+        let lines: Vec<Term> = (0..194).map(|line| term((line, 1.0))).collect();
+        let (points, _) = points();
+        let moved = |(i, point): (usize, MeasuredPoint)| MeasuredPoint {
+            terms: lagrange(6.4 + 31.7 * (i / 14) as f64, 194).into_iter().map(term).collect(),
+            ..point
+        };
+        let merging =
+            Merging::new(&points.into_iter().enumerate().map(moved).collect::<Vec<_>>(), &lines).unwrap();
+        assert_eq!(merging.points.len(), 7);
+        let weights = merging.points.iter().flat_map(|point| &point.terms).map(|term| term.weight);
+        assert!(weights.chain([merging.left]).all(f64::is_finite) && merging.left > 0.0);
     }
 }

@@ -207,7 +207,7 @@ impl Overhang {
     }
 
     /// The points merged.
-    pub(super) fn merging(&self, points: &[MeasuredPoint], cloth: &Cloth) -> Merging {
+    pub(super) fn merging(&self, points: &[MeasuredPoint], cloth: &Cloth) -> Option<Merging> {
         let line = |line: &Vec<usize>| Term::new(line[0], 1.0, cloth);
         Merging::new(points, &self.lines[..self.grid.columns].iter().map(line).collect::<Vec<_>>())
     }

@@ -1,0 +1,232 @@
+//! Errors of a frame's clip poses before its forces are compared: their noise, and the shape of the sheet where it was
+//! seen.
+//!
+//! ```text
+//! r = N ν + e, per axis       residual of the seen points at exact poses, over their noise; N = ∂ simulated/∂ν
+//! H = NᵀN                     information of the shape; of its own noise alone
+//! m² = max(0, ‖e‖²/n − 1 − 2√(2/n)) (ς_x/ς)²          misfit: a smooth error of the shape, in deviations of a clip
+//! g = H⁻¹ Nᵀ (correction)     what the grid makes of the poses: as much may be left
+//! A = I + Σ (H⁻¹ + m² I + g gᵀ)⁻¹                     information of it, and of the noise of the poses, 0 ± 1
+//! ν = mean + spread · μ       spread spreadᵀ = A⁻¹, μ = 0 ± 1
+//! ```
+//!
+//! The shape of a cloth that the model does not meet thus says nothing, and the axes are judged apart: cloth that
+//! narrows more than simulated still tells how far it was pulled. A shape says nothing before the grid's error is known.
+
+use super::frames::Equilibria;
+use super::observation::{Balance, coordinates};
+use crate::twin::replica::Replica;
+use nalgebra::{DMatrix, DVector};
+
+/// Relative eigenvalue of H below which the shape does not see a direction.
+const UNSEEN: f64 = 1e-12;
+
+/// What is known of the errors of a frame's clip poses: normal, in standard deviations of their noise.
+pub(super) struct PosePrior {
+    /// Likeliest errors.
+    pub(super) mean: DVector<f64>,
+    /// Columns of independent errors, one standard deviation each.
+    pub(super) spread: DMatrix<f64>,
+    /// Derivative of the mean by the control values.
+    pub(super) by_value: DMatrix<f64>,
+    /// Error of the mean by as much of the grid's error as was corrected.
+    pub(super) of_grid: DVector<f64>,
+    /// Inverse of `spread`.
+    to_deviations: DMatrix<f64>,
+}
+
+/// Points of a shape along one axis, in units of their noise.
+struct AxisRows {
+    /// Residual in the first column, correction for the grid in the second, derivatives of the simulated coordinate by
+    /// the control values in the others.
+    rows: DMatrix<f64>,
+    /// Derivatives by the errors of the poses.
+    own: DMatrix<f64>,
+}
+
+impl Equilibria<'_> {
+    /// What is known of the errors of a frame's clip poses, in equilibrium at errors `at`.
+    ///
+    /// * `values` — number of control values
+    /// * `correction` — of the points for the grid, m; without it the shape says nothing
+    pub(super) fn pose_prior(
+        &self,
+        replica: &Replica,
+        balance: &Balance<'_>,
+        values: usize,
+        at: &DVector<f64>,
+        correction: &[f64],
+    ) -> PosePrior {
+        let (Some(noise), Some(poses)) = (replica.position_noise, &replica.clip_poses) else {
+            return PosePrior::of_noise(at.len(), values);
+        };
+        let points = coordinates(balance.frame(), f64::INFINITY);
+        let points: Vec<_> = points.iter().zip(correction).collect();
+        let axes = if replica.planar { 0..2 } else { 0..3 };
+        let axes: Vec<AxisRows> = axes
+            .filter_map(|axis| {
+                let points: Vec<_> = points.iter().filter(|(point, _)| point.axis() == Some(axis)).collect();
+                // Fewer say less than the poses ask.
+                (points.len() > at.len()).then(|| {
+                    let mut rows = DMatrix::zeros(points.len(), values + 2);
+                    let mut own = DMatrix::zeros(points.len(), at.len());
+                    let mut derivatives = vec![0.0; values + at.len()];
+                    for (i, (point, correction)) in points.iter().enumerate() {
+                        let residual = (point.measured - point.simulated(balance) - **correction) / noise;
+                        let (bent, slope) =
+                            self.task.robust.map_or((residual, 1.0), |robust| robust.bend(residual));
+                        rows[(i, 0)] = bent;
+                        rows[(i, 1)] = slope * **correction / noise;
+                        let (by_value, by_own) = derivatives.split_at_mut(values);
+                        point.differentiate(balance, by_value, by_own);
+                        by_value.iter().enumerate().for_each(|(j, d)| rows[(i, j + 2)] = slope * d / noise);
+                        by_own.iter().enumerate().for_each(|(j, d)| own[(i, j)] = slope * d / noise);
+                    }
+                    AxisRows { rows, own }
+                })
+            })
+            .collect();
+        match axes.is_empty() {
+            true => PosePrior::of_noise(at.len(), values),
+            false => PosePrior::of_shape(at, &axes, replica.independent, noise / poses.noise()),
+        }
+    }
+}
+
+impl PosePrior {
+    /// Noise of the poses alone.
+    fn of_noise(unknowns: usize, values: usize) -> Self {
+        let identity = DMatrix::identity(unknowns, unknowns);
+        Self {
+            mean: DVector::zeros(unknowns),
+            spread: identity.clone(),
+            by_value: DMatrix::zeros(unknowns, values),
+            of_grid: DVector::zeros(unknowns),
+            to_deviations: identity,
+        }
+    }
+
+    /// Noise of the poses and a shape.
+    ///
+    /// * `at` — errors at which the residuals were found
+    /// * `axes` — the seen points
+    /// * `share` — of the points that are independent
+    /// * `noise` — noise of a point over that of a clip's place
+    fn of_shape(at: &DVector<f64>, axes: &[AxisRows], share: f64, noise: f64) -> Self {
+        let unknowns = at.len();
+        let columns = axes.first().map_or(2, |axis| axis.rows.ncols());
+        let mut information = DMatrix::identity(unknowns, unknowns);
+        let mut pull = DMatrix::zeros(unknowns, columns);
+        for AxisRows { rows, own } in axes {
+            let n = rows.nrows() as f64;
+            let eigen = (own.transpose() * own).symmetric_eigen();
+            let seen = eigen.eigenvalues.map(|h| h > UNSEEN * eigen.eigenvalues.amax());
+            let mut along = eigen.eigenvectors.transpose() * own.transpose() * rows;
+            let met: f64 = (0..unknowns)
+                .filter(|&i| seen[i])
+                .map(|i| along[(i, 0)].powi(2) / eigen.eigenvalues[i])
+                .sum();
+            // What is left would be of size 1 by noise alone, give or take its own chance.
+            let excess = (rows.column(0).norm_squared() - met) / n - 1.0 - 2.0 * (2.0 / n).sqrt();
+            let misfit = excess.max(0.0) * noise * noise;
+            let shift = eigen.eigenvectors.transpose() * at;
+            let mut weights = DVector::zeros(unknowns);
+            for i in (0..unknowns).filter(|&i| seen[i]) {
+                let h = eigen.eigenvalues[i];
+                weights[i] = 1.0 / (1.0 / (share * h) + misfit);
+                // The errors that meet the shape best, and their slopes.
+                along.row_mut(i).scale_mut(1.0 / h);
+                along[(i, 0)] += shift[i];
+            }
+            // (W⁻¹ + g gᵀ)⁻¹ after Sherman and Morrison 1950.
+            let mut weights = DMatrix::from_diagonal(&weights);
+            let of_grid = &weights * along.column(1);
+            weights -= &of_grid * of_grid.transpose() / (1.0 + of_grid.dot(&along.column(1)));
+            let weighted = &eigen.eigenvectors * weights;
+            information += &weighted * eigen.eigenvectors.transpose();
+            pull += weighted * along;
+        }
+        let eigen = information.symmetric_eigen();
+        let root = eigen.eigenvalues.map(f64::sqrt);
+        let spread = &eigen.eigenvectors * DMatrix::from_diagonal(&root.map(f64::recip));
+        let to_deviations = DMatrix::from_diagonal(&root) * eigen.eigenvectors.transpose();
+        let best = &spread * (spread.transpose() * pull);
+        Self {
+            mean: best.column(0).into_owned(),
+            // A curve that moves a point takes over what the poses had to explain.
+            by_value: -best.columns(2, columns - 2),
+            of_grid: best.column(1).into_owned(),
+            spread,
+            to_deviations,
+        }
+    }
+
+    /// Errors as deviations from the mean.
+    pub(super) fn deviations(&self, errors: &DVector<f64>) -> DVector<f64> {
+        &self.to_deviations * (errors - &self.mean)
+    }
+
+    /// Errors from deviations.
+    pub(super) fn errors(&self, deviations: &DVector<f64>) -> DVector<f64> {
+        &self.mean + &self.spread * deviations
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 40 points that two poses and one control value move, at known errors and with a given residual beside them.
+    fn axis(at: &DVector<f64>, truth: &DVector<f64>, beside: impl Fn(usize) -> f64) -> AxisRows {
+        let wave = |i: usize, f: f64| (f * i as f64 + 0.3 * f).sin();
+        let own = DMatrix::from_fn(40, 2, |i, j| [3.0, 0.4][j] * wave(i, 0.7 + j as f64));
+        let residual = &own * (truth - at);
+        let rows = DMatrix::from_fn(40, 3, |i, j| [residual[i] + beside(i), 0.0, wave(i, 0.5)][j]);
+        AxisRows { rows, own }
+    }
+
+    #[test]
+    fn a_shape_that_is_met_tells_the_poses_by_its_normal_equations() {
+        let (at, truth) = (DVector::from_vec(vec![0.5, -1.0]), DVector::from_vec(vec![2.0, 1.0]));
+        let axes = [axis(&at, &truth, |i| 0.5 * (7.1 * i as f64).sin()), axis(&at, &truth, |_| 0.0)];
+        let found = PosePrior::of_shape(&at, &axes, 0.8, 1.0);
+        let mut normal = DMatrix::identity(2, 2);
+        let mut right = DMatrix::zeros(2, 3);
+        for AxisRows { rows, own } in &axes {
+            let mut rows = rows.clone();
+            rows.set_column(0, &(rows.column(0) + own * &at));
+            normal += 0.8 * own.transpose() * own;
+            right += 0.8 * own.transpose() * rows;
+        }
+        let inverse = normal.try_inverse().unwrap();
+        let expected = &inverse * right;
+        assert!((&found.mean - expected.column(0)).amax() < 1e-12);
+        assert!((&found.by_value + expected.columns(2, 1)).amax() < 1e-12);
+        assert!((&found.spread * found.spread.transpose() - inverse).amax() < 1e-12);
+        let errors = DVector::from_vec(vec![0.3, 0.7]);
+        assert!((found.errors(&found.deviations(&errors)) - errors).amax() < 1e-12);
+    }
+
+    #[test]
+    fn a_shape_that_is_not_met_says_nothing_along_that_axis() {
+        let (at, truth) = (DVector::zeros(2), DVector::from_vec(vec![1.0, -1.0]));
+        let off = |i: usize| 1e4 * (0.1 * i as f64).cos();
+        let found = PosePrior::of_shape(&at, &[axis(&at, &truth, off)], 1.0, 1.0);
+        assert!(found.mean.amax() < 0.01 && (&found.spread * found.spread.transpose())[(0, 0)] > 0.999);
+        let axes = [axis(&at, &truth, off), axis(&at, &truth, |_| 0.0)];
+        let found = PosePrior::of_shape(&at, &axes, 1.0, 1.0);
+        assert!((found.mean[0] - 1.0).abs() < 0.01 && found.spread.amax() < 0.7);
+    }
+
+    #[test]
+    fn poses_are_as_uncertain_as_what_the_grid_makes_of_them() {
+        let (at, truth) = (DVector::zeros(2), DVector::from_vec(vec![1.0, -1.0]));
+        let mut off = axis(&at, &truth, |_| 0.0);
+        // A correction as if the first pose were off by 100 deviations.
+        off.rows.set_column(1, &(100.0 * off.own.column(0)));
+        let found = PosePrior::of_shape(&at, &[off], 1.0, 1.0);
+        let variances = (&found.spread * found.spread.transpose()).diagonal();
+        assert!(found.mean[0].abs() < 0.01 && variances[0] > 0.99 && variances[1] < 0.7);
+        assert!(found.of_grid.amax() < 0.02);
+    }
+}
