@@ -83,7 +83,7 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
             report.stages.iter().any(|stage| stage.interventions.unstable_balances_left > 0)
         };
         let [curve_limit, band_limit] =
-            if buckled(before) || buckled(&after) { [2e-3, 0.5] } else { [1e-6, 0.05] };
+            if buckled(before) || buckled(&after) { [2e-3, 0.5] } else { [1e-5, 0.05] };
         for component in Component::ALL {
             let Image { component: other, strain, stress } = image(component);
             let [Some(before), Some(after)] = [before.stage(component), after.stage(other)] else {

@@ -323,6 +323,8 @@ fn curves_for_a_mesh_are_validated_on_it() {
         "{stdout}"
     );
     assert!(fs::read_to_string(&material).unwrap().contains("\"for_mesh_m\": 0.01,"));
+    let page = fs::read_to_string(fit.join("report.html")).unwrap();
+    assert!(page.contains("tests. Curves for a mesh with cells of 10 mm"));
     let validate = |more: &[&str]| {
         let output = run(&[
             &[

@@ -85,7 +85,10 @@ pub fn run(
         progress.finish();
         finished.push(match entry {
             Ok(Entry { row, report, validation }) => {
-                let fit = || Fit::new(&set, &report, validation.as_ref(), Frames::LeftOut);
+                let fit = || {
+                    let fit = Fit::new(&set, &report, validation.as_ref(), Frames::LeftOut);
+                    fit.for_mesh(settings.for_mesh)
+                };
                 let shown = Shown { row, fit: (!options.no_report).then(fit) };
                 out.keep(&shown)?;
                 shown

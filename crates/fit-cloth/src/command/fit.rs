@@ -239,7 +239,9 @@ fn write(
             write_plots(&folder, set, report)?;
         }
         if paged {
-            let fit = |fitted: &Fitted| Fit::new(set, &fitted.report, None, Frames::Shown);
+            let fit = |Fitted { report, material }: &Fitted| {
+                Fit::new(set, report, None, Frames::Shown).for_mesh(material.provenance.for_mesh_m)
+            };
             Page::new(&set.fabric.name, results.iter().map(fit).collect(), None).write(temporary)?;
         }
         Ok(())

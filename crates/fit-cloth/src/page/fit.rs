@@ -108,6 +108,16 @@ impl Fit {
             courses: courses(report),
         }
     }
+
+    /// States that its curves are for one mesh, if they are.
+    ///
+    /// * `side` — of the mesh's cells, m
+    pub fn for_mesh(mut self, side: Option<f64>) -> Self {
+        if let Some(side) = side {
+            self.about = format!("{} {}.", self.about, text::for_mesh(side));
+        }
+        self
+    }
 }
 
 impl Residual {

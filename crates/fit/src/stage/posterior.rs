@@ -5,7 +5,7 @@
 //! constant   θ = (θ₀)                        straight   θ = (θ₀, θ₁ ~ N(0, τ₁²))
 //! bent       θ = (θ₀, θ₁ ~ N(0, τ₁²), θ₂ … ~ N(0, τ₂²))      ln τ ~ N(ln usual, WIDTH²)
 //! evidence   −2 ln p(y | τ) = ln|AᵀA + D| − ln|D|₊ + min_θ (‖y − A θ‖² + θᵀ D θ)      A = J B, D = diag(0, τ₁⁻², τ₂⁻² …)
-//! k̄ = Σ w k(τ)      C = Σ w (C(τ) + (k(τ) − k̄)(k(τ) − k̄)ᵀ)      w ∝ p(y | τ) p(τ)
+//! k̄ = Σ w k(τ)      C = Σ w (C(τ) + (k(τ) − k̄)(k(τ) − k̄)ᵀ)      w ∝ p(y | τ) p(τ), of straight ones a tenth
 //! ```
 //!
 //! What the data do not tell apart stays in the band; what they do tell is as sharp as with the right number of points
@@ -15,6 +15,10 @@ use nalgebra::{DMatrix, DVector};
 
 /// Usual change from end to end and usual second difference of five points, as shares of the stiffness.
 const USUAL: [f64; 2] = [0.3, 0.05];
+
+/// A straight course that is no constant is chance, and weighs a tenth of the others: else curves that bend too little to be
+/// told from a straight one would lie outside their bands.
+const STRAIGHT: f64 = 0.1;
 
 /// Standard deviation of ln τ.
 const WIDTH: f64 = 1.5;
@@ -74,13 +78,14 @@ impl Posterior {
         };
         let logs: Vec<f64> = (-REACH..=REACH).map(|step| STEP * f64::from(step)).collect();
         let all: f64 = logs.iter().map(|log| (-0.5 * (log / WIDTH).powi(2)).exp()).sum();
-        // −2 ln p(τ), normalised: the three descriptions weigh the same before.
+        // −2 ln p(τ), normalised.
         let unusual = |log: f64| (log / WIDTH).powi(2) + 2.0 * all.ln();
+        let rare = -2.0 * STRAIGHT.ln();
         let finer = (4.0 / (points - 1) as f64).powi(2);
         let mut found: Vec<Possible> = possible(&[], 0.0).into_iter().collect();
         for trend in &logs {
             let tau = USUAL[0] * trend.exp();
-            found.extend(possible(&[tau], unusual(*trend)));
+            found.extend(possible(&[tau], unusual(*trend) + rare));
             for bend in &logs {
                 let mut taus = vec![finer * USUAL[1] * bend.exp(); points - 1];
                 taus[0] = tau;
