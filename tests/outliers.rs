@@ -55,7 +55,7 @@ fn wrong_forces_hardly_move_the_curve() {
             stress_error(&stage.curve.samples, &law)
         });
         println!("forces, noise known {known}: {:.2} % without, {:.2} % with", 100.0 * ruled, 100.0 * robust);
-        assert!(ruled > 0.05 && robust < 0.015, "{ruled} {robust}");
+        assert!(ruled > 0.04 && robust < 0.015, "{ruled} {robust}");
     }
 }
 
