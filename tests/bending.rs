@@ -9,7 +9,7 @@
 //! The fit recovers the flexural rigidity within 0.1 % up to Γ = 100 without noise, with 0.075 mm within 0.5 %; a law that
 //! bends within a sixteenth of the range, by nine points, within 2.5 % (relative L2 error over the visited range).
 
-use cloth_data::frame::Kind;
+use cloth_data::frame::{Kind, MeasurementSet};
 use cloth_fit::incremental::{FitReport, Stage, fit};
 use cloth_fit::judge::verdict::of_stage;
 use cloth_fit::optimise::uncertainty::Source;
@@ -34,17 +34,31 @@ fn fit_bending(
 
 fn fit_with(kind: Kind, moment: &dyn Fn(f64) -> f64, noise: Option<u64>, settings: &Settings) -> FitReport {
     let overhangs = between_rows(12..=20);
-    let cantilever = Cantilever {
+    fitted(&square(kind, moment, &overhangs, 100, noise).measure(), settings)
+}
+
+fn fitted(set: &MeasurementSet, settings: &Settings) -> FitReport {
+    fit(set, &[Stage::Bend], &Knowledge::default(), settings, &mut Watch::default()).unwrap()
+}
+
+/// * `vertices` — a side
+/// * `noise` — a seed
+fn square<'a>(
+    kind: Kind,
+    moment: &'a dyn Fn(f64) -> f64,
+    overhangs: &'a [f64],
+    vertices: usize,
+    noise: Option<u64>,
+) -> Cantilever<'a> {
+    Cantilever {
         kind,
         areal_density: DENSITY,
         moment,
-        overhangs: &overhangs,
+        overhangs,
         size: [SIDE; 2],
-        measured: [100, 100],
+        measured: [vertices; 2],
         noise: noise.map(|seed| (POSITION_NOISE, seed)),
-    };
-    fit(&cantilever.measure(), &[Stage::Bend], &Knowledge::default(), settings, &mut Watch::default())
-        .unwrap()
+    }
 }
 
 fn rigidity(gamma: f64) -> f64 {
@@ -55,15 +69,8 @@ fn rigidity(gamma: f64) -> f64 {
 fn a_given_noise_that_the_points_contradict_does_not_make_the_band() {
     let truth = rigidity(10.0);
     let moment = |curvature: f64| truth * curvature;
-    let cantilever = Cantilever {
-        kind: Kind::BendWeft,
-        areal_density: DENSITY,
-        moment: &moment,
-        overhangs: &between_rows(12..=20),
-        size: [SIDE; 2],
-        measured: [100, 100],
-        noise: Some((POSITION_NOISE, 4)),
-    };
+    let overhangs = between_rows(12..=20);
+    let cantilever = square(Kind::BendWeft, &moment, &overhangs, 100, Some(4));
     let settings = Settings { variant: Variant::Linear, ..Settings::default() };
     let [right, small, large] = [1.0, 0.1, 10.0].map(|told| {
         let mut set = cantilever.measure();
@@ -144,44 +151,33 @@ fn a_moment_law_that_is_no_line_comes_back() {
     }
 }
 
-/// As soft as a light knit, which hangs nearly straight down, on a mesh as coarse as the grid.
+/// As soft as a light knit, which hangs nearly straight down, on a mesh as coarse as the grid. Bands of laws that soften
+/// are too narrow: so few vertices tell such a course hardly from a straight one, which is taken to be likelier.
 #[test]
 fn soft_sheets_come_back_through_noise() {
-    let mut all = Vec::new();
-    for gamma in [36.0, 70.0, 126.0] {
-        let truth = rigidity(gamma);
-        let mut errors = Vec::new();
-        for softening in [0.0, 0.3] {
+    let overhangs = between_rows(12..=20);
+    for (softening, enough) in [(0.0, 0.95), (0.3, 0.75)] {
+        let mut all = Vec::new();
+        for gamma in [36.0, 70.0, 126.0] {
+            let truth = rigidity(gamma);
             // Down to 0.7 of the rigidity, over curvatures of 30 1/m.
             let moment = |k: f64| truth * ((1.0 - softening) * k + softening * 30.0 * (k / 30.0).tanh());
             let of_seed = |seed: u64| {
-                let cantilever = Cantilever {
-                    kind: Kind::BendWarp,
-                    areal_density: DENSITY,
-                    moment: &moment,
-                    overhangs: &between_rows(12..=20),
-                    size: [SIDE; 2],
-                    measured: [25, 25],
-                    noise: Some((POSITION_NOISE, seed)),
-                };
-                let (known, settings) = (Knowledge::default(), Settings::default());
-                let report =
-                    fit(&cantilever.measure(), &[Stage::Bend], &known, &settings, &mut Watch::default());
-                let report = report.unwrap();
+                let set = square(Kind::BendWarp, &moment, &overhangs, 25, Some(seed)).measure();
+                let report = fitted(&set, &Settings::default());
                 let samples = &report.stage(Component::BendWarp).unwrap().curve.samples;
                 [stress_error(samples, &moment), coverage(samples, &moment)]
             };
             let found: Vec<[f64; 2]> = (1..=4).map(of_seed).collect();
             println!("Γ {gamma}, softer by {softening}: {found:.3?}");
-            errors.extend(found.iter().map(|[error, _]| error * error));
+            let rms = (found.iter().map(|[error, _]| error * error).sum::<f64>() / found.len() as f64).sqrt();
+            assert!(rms <= 0.05, "Γ {gamma}, softer by {softening}: {rms}");
             all.extend(found.iter().map(|[_, inside]| *inside));
         }
-        let rms = (errors.iter().sum::<f64>() / errors.len() as f64).sqrt();
-        assert!(rms <= 0.05, "Γ {gamma}: {rms}");
+        let inside = all.iter().sum::<f64>() / all.len() as f64;
+        println!("softer by {softening}: {inside:.3} inside");
+        assert!(inside >= enough, "{softening}: {inside}");
     }
-    let inside = all.iter().sum::<f64>() / all.len() as f64;
-    println!("{inside:.3} inside");
-    assert!(inside >= 0.88, "{inside}");
 }
 
 #[test]

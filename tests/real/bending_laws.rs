@@ -169,11 +169,13 @@ fn pooled(step: usize, nodes: Option<[usize; 2]>) {
                     1.4826 * of(|f| f.deviation.abs(), 0.5),
                 );
                 assert!(failed == 0 && inside >= 0.88);
+                assert!(nonlinear || of_long(0.5) <= 0.15 && of_long(0.9) <= 1.0);
                 errors.extend(long);
             }
         }
-        let [median, most] = if nonlinear { [0.006, 0.025] } else { [0.0015, 0.01] };
-        assert!(quantile(errors.clone(), 0.5) <= median && quantile(errors, 0.9) <= most);
+        // Of noisy nonlinear laws few are long enough in a reduced count.
+        let of_all = |share| quantile(errors.clone(), share);
+        assert!(!nonlinear || of_all(0.5) <= 0.006 && of_all(0.9) <= 0.025);
     }
 }
 

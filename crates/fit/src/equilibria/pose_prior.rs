@@ -14,7 +14,7 @@
 //! narrows more than simulated still tells how far it was pulled. A shape says nothing before the grid's error is known.
 
 use super::frames::Equilibria;
-use super::observation::{Balance, coordinates};
+use super::observation::{Balance, Observation, coordinates};
 use crate::twin::replica::Replica;
 use nalgebra::{DMatrix, DVector};
 
@@ -37,11 +37,12 @@ pub(super) struct PosePrior {
 
 /// Points of a shape along one axis, in units of their noise.
 struct AxisRows {
-    /// Residual in the first column, correction for the grid in the second, derivatives of the simulated coordinate by
-    /// the control values in the others.
+    /// Residual in the first column, derivatives of the simulated coordinate by the control values in the others.
     rows: DMatrix<f64>,
     /// Derivatives by the errors of the poses.
     own: DMatrix<f64>,
+    /// Correction for the grid.
+    of_grid: DVector<f64>,
 }
 
 impl Equilibria<'_> {
@@ -60,36 +61,28 @@ impl Equilibria<'_> {
         let (Some(noise), Some(poses)) = (replica.position_noise, &replica.clip_poses) else {
             return PosePrior::of_noise(at.len(), values);
         };
-        let points = coordinates(balance.frame(), f64::INFINITY);
-        let points: Vec<_> = points.iter().zip(correction).collect();
+        let seen = coordinates(balance.frame(), f64::INFINITY);
         let axes = if replica.planar { 0..2 } else { 0..3 };
-        let axes: Vec<AxisRows> = axes
-            .filter_map(|axis| {
-                let points: Vec<_> = points.iter().filter(|(point, _)| point.axis() == Some(axis)).collect();
-                // Fewer say less than the poses ask.
-                (points.len() > at.len()).then(|| {
-                    let mut rows = DMatrix::zeros(points.len(), values + 2);
-                    let mut own = DMatrix::zeros(points.len(), at.len());
-                    let mut derivatives = vec![0.0; values + at.len()];
-                    for (i, (point, correction)) in points.iter().enumerate() {
-                        let residual = (point.measured - point.simulated(balance) - **correction) / noise;
-                        let (bent, slope) =
-                            self.task.robust.map_or((residual, 1.0), |robust| robust.bend(residual));
-                        rows[(i, 0)] = bent;
-                        rows[(i, 1)] = slope * **correction / noise;
-                        let (by_value, by_own) = derivatives.split_at_mut(values);
-                        point.differentiate(balance, by_value, by_own);
-                        by_value.iter().enumerate().for_each(|(j, d)| rows[(i, j + 2)] = slope * d / noise);
-                        by_own.iter().enumerate().for_each(|(j, d)| own[(i, j)] = slope * d / noise);
-                    }
-                    AxisRows { rows, own }
-                })
+        let of_axis = |axis: usize| -> Option<AxisRows> {
+            let all = seen.iter().cloned().zip(correction.iter().copied());
+            let along = all.filter(|(point, _)| point.axis() == Some(axis));
+            let (points, correction): (Vec<Observation>, Vec<f64>) = along.unzip();
+            // Fewer say less than the poses ask.
+            (points.len() > at.len()).then(|| {
+                let (rows, own) = self.rows(noise, &points, balance, values, &correction);
+                let in_units =
+                    points.iter().zip(&correction).map(|(point, of_grid)| of_grid / (point.spread * noise));
+                AxisRows { rows, own, of_grid: DVector::from_iterator(points.len(), in_units) }
             })
-            .collect();
-        match axes.is_empty() {
-            true => PosePrior::of_noise(at.len(), values),
-            false => PosePrior::of_shape(at, &axes, replica.independent, noise / poses.noise()),
+        };
+        let axes: Vec<AxisRows> = axes.filter_map(of_axis).collect();
+        if axes.is_empty() {
+            return PosePrior::of_noise(at.len(), values);
         }
+        // Nodes that average the same vertices repeat them.
+        let told: f64 = balance.frame().points.iter().map(|point| point.spread.powi(-2)).sum();
+        let share = (replica.vertices as f64 / told).min(1.0);
+        PosePrior::of_shape(at, &axes, share, noise / poses.noise())
     }
 }
 
@@ -114,37 +107,34 @@ impl PosePrior {
     /// * `noise` — noise of a point over that of a clip's place
     fn of_shape(at: &DVector<f64>, axes: &[AxisRows], share: f64, noise: f64) -> Self {
         let unknowns = at.len();
-        let columns = axes.first().map_or(2, |axis| axis.rows.ncols());
+        let columns = axes.first().map_or(1, |axis| axis.rows.ncols());
         let mut information = DMatrix::identity(unknowns, unknowns);
         let mut pull = DMatrix::zeros(unknowns, columns);
-        for AxisRows { rows, own } in axes {
+        let mut grid_pull = DVector::zeros(unknowns);
+        for AxisRows { rows, own, of_grid } in axes {
             let n = rows.nrows() as f64;
             let eigen = (own.transpose() * own).symmetric_eigen();
-            let seen = eigen.eigenvalues.map(|h| h > UNSEEN * eigen.eigenvalues.amax());
-            let mut along = eigen.eigenvectors.transpose() * own.transpose() * rows;
-            let met: f64 = (0..unknowns)
-                .filter(|&i| seen[i])
-                .map(|i| along[(i, 0)].powi(2) / eigen.eigenvalues[i])
-                .sum();
+            let least = UNSEEN * eigen.eigenvalues.amax();
+            let inverse = eigen.eigenvalues.map(|h| if h > least { 1.0 / h } else { 0.0 });
+            let back = eigen.eigenvectors.transpose() * own.transpose();
+            // The errors that meet the shape best, and their slopes.
+            let along = &back * rows;
+            let mut best = DMatrix::from_diagonal(&inverse) * &along;
+            let met = best.column(0).dot(&along.column(0));
+            best.set_column(0, &(best.column(0) + eigen.eigenvectors.transpose() * at));
+            let of_grid = inverse.component_mul(&(back * of_grid));
             // What is left would be of size 1 by noise alone, give or take its own chance.
             let excess = (rows.column(0).norm_squared() - met) / n - 1.0 - 2.0 * (2.0 / n).sqrt();
             let misfit = excess.max(0.0) * noise * noise;
-            let shift = eigen.eigenvectors.transpose() * at;
-            let mut weights = DVector::zeros(unknowns);
-            for i in (0..unknowns).filter(|&i| seen[i]) {
-                let h = eigen.eigenvalues[i];
-                weights[i] = 1.0 / (1.0 / (share * h) + misfit);
-                // The errors that meet the shape best, and their slopes.
-                along.row_mut(i).scale_mut(1.0 / h);
-                along[(i, 0)] += shift[i];
-            }
+            let weight = |inverse: f64| if inverse > 0.0 { 1.0 / (inverse / share + misfit) } else { 0.0 };
             // (W⁻¹ + g gᵀ)⁻¹ after Sherman and Morrison 1950.
-            let mut weights = DMatrix::from_diagonal(&weights);
-            let of_grid = &weights * along.column(1);
-            weights -= &of_grid * of_grid.transpose() / (1.0 + of_grid.dot(&along.column(1)));
+            let mut weights = DMatrix::from_diagonal(&inverse.map(weight));
+            let weighted_grid = &weights * &of_grid;
+            weights -= &weighted_grid * weighted_grid.transpose() / (1.0 + weighted_grid.dot(&of_grid));
             let weighted = &eigen.eigenvectors * weights;
             information += &weighted * eigen.eigenvectors.transpose();
-            pull += weighted * along;
+            grid_pull += &weighted * of_grid;
+            pull += weighted * best;
         }
         let eigen = information.symmetric_eigen();
         let root = eigen.eigenvalues.map(f64::sqrt);
@@ -154,8 +144,8 @@ impl PosePrior {
         Self {
             mean: best.column(0).into_owned(),
             // A curve that moves a point takes over what the poses had to explain.
-            by_value: -best.columns(2, columns - 2),
-            of_grid: best.column(1).into_owned(),
+            by_value: -best.columns(1, columns - 1),
+            of_grid: &spread * (spread.transpose() * grid_pull),
             spread,
             to_deviations,
         }
@@ -181,8 +171,8 @@ mod tests {
         let wave = |i: usize, f: f64| (f * i as f64 + 0.3 * f).sin();
         let own = DMatrix::from_fn(40, 2, |i, j| [3.0, 0.4][j] * wave(i, 0.7 + j as f64));
         let residual = &own * (truth - at);
-        let rows = DMatrix::from_fn(40, 3, |i, j| [residual[i] + beside(i), 0.0, wave(i, 0.5)][j]);
-        AxisRows { rows, own }
+        let rows = DMatrix::from_fn(40, 2, |i, j| [residual[i] + beside(i), wave(i, 0.5)][j]);
+        AxisRows { rows, own, of_grid: DVector::zeros(40) }
     }
 
     #[test]
@@ -191,8 +181,8 @@ mod tests {
         let axes = [axis(&at, &truth, |i| 0.5 * (7.1 * i as f64).sin()), axis(&at, &truth, |_| 0.0)];
         let found = PosePrior::of_shape(&at, &axes, 0.8, 1.0);
         let mut normal = DMatrix::identity(2, 2);
-        let mut right = DMatrix::zeros(2, 3);
-        for AxisRows { rows, own } in &axes {
+        let mut right = DMatrix::zeros(2, 2);
+        for AxisRows { rows, own, .. } in &axes {
             let mut rows = rows.clone();
             rows.set_column(0, &(rows.column(0) + own * &at));
             normal += 0.8 * own.transpose() * own;
@@ -201,7 +191,7 @@ mod tests {
         let inverse = normal.try_inverse().unwrap();
         let expected = &inverse * right;
         assert!((&found.mean - expected.column(0)).amax() < 1e-12);
-        assert!((&found.by_value + expected.columns(2, 1)).amax() < 1e-12);
+        assert!((&found.by_value + expected.columns(1, 1)).amax() < 1e-12);
         assert!((&found.spread * found.spread.transpose() - inverse).amax() < 1e-12);
         let errors = DVector::from_vec(vec![0.3, 0.7]);
         assert!((found.errors(&found.deviations(&errors)) - errors).amax() < 1e-12);
@@ -223,7 +213,7 @@ mod tests {
         let (at, truth) = (DVector::zeros(2), DVector::from_vec(vec![1.0, -1.0]));
         let mut off = axis(&at, &truth, |_| 0.0);
         // A correction as if the first pose were off by 100 deviations.
-        off.rows.set_column(1, &(100.0 * off.own.column(0)));
+        off.of_grid = 100.0 * off.own.column(0);
         let found = PosePrior::of_shape(&at, &[off], 1.0, 1.0);
         let variances = (&found.spread * found.spread.transpose()).diagonal();
         assert!(found.mean[0].abs() < 0.01 && variances[0] > 0.99 && variances[1] < 0.7);

@@ -69,10 +69,11 @@ impl Equilibria<'_> {
     /// Residuals of some observations, in units of independent noise, with their derivatives by the control values in
     /// further columns; and their derivatives by the frame's own unknowns.
     ///
+    /// * `unit` — divides the residuals: the instrument's noise, or 1
     /// * `correction` — error of the grid in each simulated value, or empty
     pub(super) fn rows(
         &self,
-        replica: &Replica,
+        unit: f64,
         observations: &[Observation],
         balance: &Balance<'_>,
         values: usize,
@@ -83,7 +84,7 @@ impl Equilibria<'_> {
         let mut own = DMatrix::zeros(observations.len(), owned);
         let mut derivatives = vec![0.0; values + owned];
         for (i, observation) in observations.iter().enumerate() {
-            let scale = observation.spread * self.scale(replica);
+            let scale = observation.spread * unit;
             let simulated = observation.simulated(balance) + correction.get(i).unwrap_or(&0.0);
             let residual = (observation.measured - simulated) / scale;
             let (bent, slope) = self.task.robust.map_or((residual, 1.0), |robust| robust.bend(residual));

@@ -208,7 +208,8 @@ impl<'a> Equilibria<'a> {
             Balance::new(solver, cloth, frame, x, edge, &clip_forces, values, &columns, &sensitivity);
         let observations = self.observations(frame);
         result.simulated = observations.iter().map(|observation| observation.simulated(&balance)).collect();
-        let (mut rows, own) = self.rows(replica, &observations, &balance, values, &state.correction.values);
+        let unit = self.scale(replica);
+        let (mut rows, own) = self.rows(unit, &observations, &balance, values, &state.correction.values);
         let Some(overhang) = &frame.overhang else {
             if own.ncols() > 0 {
                 let at = DVector::from_column_slice(&state.clips);
@@ -246,7 +247,7 @@ impl<'a> Equilibria<'a> {
             Objective::Positions => None,
             Objective::Forces => {
                 let near = coordinates(frame, NEAR_EDGE * overhang.length);
-                Some(self.rows(replica, &near, &balance, values, &[]))
+                Some(self.rows(unit, &near, &balance, values, &[]))
             }
         };
         let measurements = near.as_ref().map_or(rows.nrows(), |(rows, _)| rows.nrows());

@@ -81,8 +81,8 @@ pub struct Replica {
     pub clip_poses: Option<ClipPoses>,
     /// Order of the grid's error in the size of its cells: 1 where a clip ends within a side, else 2.
     pub grid_order: i32,
-    /// Share of the nodes' observed places that are independent: of measured vertices to nodes, up to 1.
-    pub independent: f64,
+    /// Number of vertices of the measured mesh.
+    pub vertices: usize,
     /// Standard deviation of a force component, N, if known.
     pub force_noise: Option<f64>,
     /// Standard deviation of a vertex coordinate, m, if known.
@@ -183,7 +183,7 @@ impl Replica {
             planar: false,
             clip_poses: None,
             grid_order: 2,
-            independent: (sequence.mesh.len() as f64 / specimen.mesh.len() as f64).min(1.0),
+            vertices: sequence.mesh.len(),
             areal_density: parts.areal_density,
             weight: gravity * parts.areal_density,
             force_noise: noise.and_then(|noise| noise.force_n),

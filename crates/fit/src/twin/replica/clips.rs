@@ -91,7 +91,8 @@ impl Grip {
         Ok(())
     }
 
-    /// True if a clip ends within a side of the sheet: a line across that ends at a side is held nowhere else.
+    /// True if a clip ends within a side of the sheet. A clamp over several lines ends at a corner of the free cloth, which
+    /// does not count.
     pub(super) fn ends_within_a_side(&self, grid: &Grid) -> bool {
         let [columns, rows] = [grid.columns, grid.rows];
         let side = |end: usize, inner: usize, along: usize, node: &dyn Fn(usize, usize) -> usize| {
@@ -244,4 +245,28 @@ fn long_axis(sequence: &Sequence, clip: usize) -> Vector3<f64> {
     let axis = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
     // The sign that makes the largest coordinate positive.
     axis * axis[axis.iamax()].signum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::mesh::Diagonals;
+
+    #[test]
+    fn clamps_end_at_corners_and_clips_within_sides() {
+        let grid = Grid { columns: 7, rows: 5, width: 6.0, height: 4.0, diagonals: Diagonals::Forward };
+        let ends = |held: &dyn Fn(usize, usize) -> bool| {
+            let nodes = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
+            let group_of = nodes.map(|(column, row)| held(column, row).then_some(0)).collect();
+            Grip { group_of, groups: vec![[0, 0]] }.ends_within_a_side(&grid)
+        };
+        // Clamps of one line and of two, and bars that meet.
+        assert!(!ends(&|_, row| row == 0 || row == 4));
+        assert!(!ends(&|column, _| column <= 1 || column >= 5));
+        assert!(!ends(&|column, row| column == 0 || column == 6 || row == 0 || row == 4));
+        // Bars with free corners, and a clip at a corner.
+        assert!(ends(&|column, row| row == 0 && (1..6).contains(&column)));
+        assert!(ends(&|column, row| column == 6 && (1..4).contains(&row)));
+        assert!(ends(&|column, row| row == 4 && column < 3));
+    }
 }
