@@ -8,6 +8,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cargo test --workspace
 cargo fmt --all -- --check
 cargo fmt --manifest-path tests/fuzz/Cargo.toml -- --check
+# Its own lock file follows that of the workspace.
+cargo metadata --locked --format-version 1 --manifest-path tests/fuzz/Cargo.toml > /dev/null
 python3 tests/prose.py
 cargo clippy --workspace --all-targets -- -D warnings
 # The target on real measurements is left out of plain test runs, and so of --all-targets.
