@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!  fixture ──▶ fit ──▶ curves, bands
-//!     │                   ‖  within 1e-6 of the largest stress; bands within a twentieth
+//!     │                   ‖  within 1e-6 of the largest stress (wrinkled: 1e-4)
 //!  moved, mirrored, reordered ──▶ fit ──▶ curves, weft and warp exchanged where the image does that
 //! ```
 //!
@@ -69,8 +69,7 @@ fn exchanged(component: Component) -> Image {
     })
 }
 
-/// Fits every fixture after a change; curves and bands must be the images of the original ones. From an unstable
-/// equilibrium rounding may lead to either side, which moves the curve fitted to it a little, and all after it.
+/// Fits every fixture after a change; curves and bands must be the images of the original ones.
 fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&mut MeasurementSet)) {
     for (set, before) in &*MEASURED {
         let what = format!("{what}, {}", set.fabric.name);
@@ -79,11 +78,11 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
         change(&mut changed);
         let after = fitted(&changed);
         assert!(after.failures.is_empty() && after.notices == before.notices, "{what}: {:?}", after.notices);
-        let buckled = |report: &FitReport| {
-            report.stages.iter().any(|stage| stage.interventions.unstable_balances_left > 0)
-        };
+        // Between wrinkled shapes a path may turn either way by rounding; then the grid's correction may lack a frame.
+        let wrinkled =
+            |report: &FitReport| report.stages.iter().any(|stage| stage.interventions.matrices_damped > 0);
         let [curve_limit, band_limit] =
-            if buckled(before) || buckled(&after) { [2e-3, 0.5] } else { [1e-5, 0.05] };
+            if wrinkled(before) || wrinkled(&after) { [1e-4, 0.01] } else { [1e-6, 1e-4] };
         for component in Component::ALL {
             let Image { component: other, strain, stress } = image(component);
             let [Some(before), Some(after)] = [before.stage(component), after.stage(other)] else {
@@ -320,7 +319,8 @@ fn frames_that_stand_twice_make_bands_narrower_by_root_two_but_for_misfit() {
             let rms = (widest[0] + widest[1]) / before.curve.samples.last().unwrap().stress;
             match before.scatter.misfit > 0.0 || after.scatter.misfit > 0.0 {
                 _ if grown => assert!(curve < 2.0 * rms, "{what}"),
-                true => assert!((0.7..2.0).contains(&wider) && curve < rms, "{what}"),
+                // Another reach of the same number of points.
+                true => assert!((0.7..3.0).contains(&wider) && curve < rms, "{what}"),
                 false => assert!(narrower < 0.1 && curve < 0.05 * rms, "{what}: {narrower} {curve}"),
             }
         }

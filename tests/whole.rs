@@ -140,7 +140,7 @@ fn another_sample_is_met_as_far_as_it_differs() {
 
 /// A set of every test on a coarse grid.
 fn coarse(name: &str) -> MeasurementSet {
-    let rig = Rig { nodes: [25, 25], measured: [13, 13], frames: 4, ..Rig::default() };
+    let rig = Rig { nodes: [25, 25], measured: [13, 13], frames: 12, ..Rig::default() };
     rig.measure(&KnownFabric::named(name).unwrap()).unwrap()
 }
 

@@ -25,7 +25,7 @@ mod state;
 mod task;
 mod unknowns;
 
-pub use frames::{DroppedFrame, Equilibria, Settled};
+pub use frames::{DroppedFrame, Equilibria, Settled, States};
 pub use meter::{Counters, Meter};
 pub use observation::Objective;
 pub(crate) use residual::without_rounding;

@@ -184,12 +184,22 @@ impl<'a> Equilibria<'a> {
         self.replicas[index].frames[frame].extension
     }
 
+    /// Sum of squares of a frame's measured forces, N².
+    fn load(&self, place: usize) -> f64 {
+        let (index, frame) = self.frames[place];
+        self.replicas[index].frames[frame].forces.iter().map(|component| component.force.powi(2)).sum()
+    }
+
     /// The frames between clips that are corrected: a few of every sequence, from the smallest extension to the largest.
     fn samples(&self) -> Vec<usize> {
         let mut of_replica: Vec<Vec<usize>> = vec![Vec::new(); self.replicas.len()];
         self.frames.iter().enumerate().for_each(|(place, &(index, _))| of_replica[index].push(place));
         for places in &mut of_replica {
-            places.sort_by(|&a, &b| self.extension(a).total_cmp(&self.extension(b)));
+            // Loaded and unloaded again, two frames have one extension: of these the less loaded first, in any order of frames.
+            places.sort_by(|&a, &b| {
+                let by_extension = self.extension(a).total_cmp(&self.extension(b));
+                by_extension.then_with(|| self.load(a).total_cmp(&self.load(b)))
+            });
         }
         of_replica.iter().flat_map(|places| spread(places, SAMPLES)).collect()
     }

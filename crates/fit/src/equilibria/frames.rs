@@ -42,6 +42,9 @@ pub struct Settled<'s> {
     pub correction: &'s [f64],
 }
 
+/// The states of all frames at one evaluation.
+pub struct States(Vec<State>);
+
 /// A gap wider than this multiple of the widest gap between frames is not bridged: frames are rarely spaced evenly.
 const BRIDGED: f64 = 2.0;
 
@@ -118,6 +121,16 @@ impl<'a> Equilibria<'a> {
         self.unknowns = unknowns;
         // Sensitivities belong to the old control values.
         self.states.iter_mut().for_each(|state| state.sensitivity.clear());
+    }
+
+    /// The states of all frames, to return to.
+    pub fn states(&self) -> States {
+        States(self.states.clone())
+    }
+
+    /// Continues from earlier states of the same frames.
+    pub fn return_to(&mut self, states: &States) {
+        self.states.clone_from(&states.0);
     }
 
     /// The unknowns at the last evaluation.

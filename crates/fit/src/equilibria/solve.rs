@@ -19,10 +19,10 @@ const SAME_SHAPE: f64 = 0.01;
 /// The pose of an edge, or those of clips, are found where a step removes less than this share of the residual, or after so
 /// many steps.
 const FOUND: f64 = 1e-4;
-const MOST_POSES: usize = 12;
+const MOST_POSES: usize = 24;
 
-/// Steps to a pose end where one removes more than this share of what the last one did: equilibria are not
-/// exact.
+/// Steps to a pose end where one removes little and more than this share of what the last one did: equilibria are not exact.
+const LITTLE: f64 = 0.01;
 const SLOWEST: f64 = 0.5;
 
 /// Rounding of the pose, as a share of the residual of unit measurements.
@@ -33,6 +33,15 @@ const UNFELT: f64 = 1e-6;
 
 /// Share of an overhang, from the edge on, that places the edge where a shape is predicted.
 const NEAR_EDGE: f64 = 1.0 / 3.0;
+
+/// A step to the best pose of an edge, or to the likeliest ones of clips.
+struct PoseStep {
+    step: DVector<f64>,
+    /// The part of the residual that it removes.
+    removed: f64,
+    /// The residual before it.
+    residual: f64,
+}
 
 impl<'a> Equilibria<'a> {
     /// Equilibria of all frames. `change`, of the control values since the states were found, extrapolates the states
@@ -103,21 +112,33 @@ impl<'a> Equilibria<'a> {
             rows: DMatrix::zeros(0, 0),
             simulated: Vec::new(),
         };
-        let (mut poses, mut last) = (0, f64::INFINITY);
-        loop {
+        let mut last: Option<(State, PoseStep)> = None;
+        for poses in 1.. {
             let found = self.balance(solver, replica, frame, curves, &mut result.state);
             result.status = found.status;
             // Only an equilibrium has sensitivities.
             if !found.converged() {
-                return result;
+                break;
             }
-            poses += 1;
-            let least = if poses < MOST_POSES { last } else { 0.0 };
-            let step = self.differentiate(solver, replica, frame, curves, groups, least, &mut result);
-            let Some((step, removed)) = step else { return result };
-            last = SLOWEST * removed;
-            take_own_step(replica, frame, &step, &mut result.state);
+            let slowest = last.as_ref().map_or(f64::INFINITY, |(_, step)| SLOWEST * step.removed);
+            let ends = |removed: f64, size: f64| {
+                poses >= MOST_POSES || removed <= LITTLE * size && removed >= slowest
+            };
+            let next = self.differentiate(solver, replica, frame, curves, groups, &ends, &mut result);
+            let Some(next) = next else { break };
+            match &mut last {
+                // Too long: half the step, from where it started.
+                Some((from, step)) if next.residual > step.residual => {
+                    step.step *= 0.5;
+                    result.state.clone_from(from);
+                }
+                _ => last = Some((result.state.clone(), next)),
+            }
+            if let Some((_, step)) = last.as_ref().filter(|_| poses + 1 < MOST_POSES) {
+                take_own_step(replica, frame, &step.step, &mut result.state);
+            }
         }
+        result
     }
 
     /// Brings a frame to equilibrium from its state, or else from its replica's own start.
@@ -162,10 +183,9 @@ impl<'a> Equilibria<'a> {
     }
 
     /// Residuals, their derivatives with respect to the groups' curves, and dx/dk. Returns a step to the best pose of
-    /// the edge, or to the likeliest ones of the clips, and the residual that it removes, unless these are found; then the
-    /// frame's own unknowns are eliminated.
+    /// the edge, or to the likeliest ones of the clips, unless these are found; then the frame's own unknowns are eliminated.
     ///
-    /// * `least` — a step that removes more does not get nearer
+    /// * `ends` — true if a step that removes so much of a residual, and leaves so much, is not taken
     #[expect(clippy::too_many_arguments, reason = "the parts of solve_with")]
     fn differentiate(
         &self,
@@ -174,9 +194,9 @@ impl<'a> Equilibria<'a> {
         frame: &ReplicaFrame,
         curves: &Curves,
         groups: &[Vec<Component>],
-        least: f64,
+        ends: &dyn Fn(f64, f64) -> bool,
         result: &mut FrameResult,
-    ) -> Option<(DVector<f64>, f64)> {
+    ) -> Option<PoseStep> {
         let cloth = replica.cloth(frame);
         let state = &mut result.state;
         let clip_forces = solver.clip_forces();
@@ -222,13 +242,15 @@ impl<'a> Equilibria<'a> {
                     eliminate(rows, &(own * &prior.spread), Prior::Unit)
                 };
                 let (way, by_own) = self.weighted(&rows, &own);
+                let residual = way.column(0).norm().hypot(prior.deviations(&at).norm());
                 let found = eliminated(way, &by_own);
                 let step = prior.errors(&found.step) - &at;
                 let removed = (by_own * &step).norm().hypot((&found.step - prior.deviations(&at)).norm());
                 let unfelt = UNFELT * (rows.nrows() as f64).sqrt();
-                if removed > FOUND * found.rows.column(0).norm() + unfelt && removed < least {
+                let size = found.rows.column(0).norm();
+                if removed > FOUND * size + unfelt && !ends(removed, size) {
                     state.sensitivity = sensitivity;
-                    return Some((step, removed));
+                    return Some(PoseStep { step, removed, residual });
                 }
                 let bent = self.task.robust.map(|_| eliminated(rows, &own));
                 let Eliminated { rows: left, by_value, .. } = bent.unwrap_or(found);
@@ -263,9 +285,10 @@ impl<'a> Equilibria<'a> {
         }
         let size = found.rows.column(0).norm();
         let rounding = ROUNDING * (measurements as f64).sqrt() * overhang.length / self.scale(replica);
-        if found.removed > FOUND * size + rounding && found.removed < least {
+        if found.removed > FOUND * size + rounding && !ends(found.removed, size) {
             state.sensitivity = sensitivity;
-            return Some((found.step, found.removed));
+            let residual = size.hypot(found.removed);
+            return Some(PoseStep { step: found.step, removed: found.removed, residual });
         }
         let bent = self.task.robust.map(|_| eliminate(of_pose, &own, Prior::Flat));
         let Eliminated { rows: left, by_value, rank, .. } = bent.unwrap_or(found);

@@ -3,7 +3,7 @@
 use super::level::{Level, SETTLED, domain_of, most_points, points_of, resampled};
 use super::posterior::Posterior;
 use super::settings::Settings;
-use crate::equilibria::{Equilibria, Objective, Unknown, Unknowns};
+use crate::equilibria::{Equilibria, Objective, States, Unknown, Unknowns};
 use crate::optimise::gauss_newton::{Evaluation, LinearConstraints, Outcome, Residuals, Status};
 use crate::optimise::uncertainty::{Covariance, Scatter};
 use cloth_sim::curve::StiffnessCurve;
@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 pub(super) const FELT: f64 = 0.1;
 
 /// Fewest control values that the frames must tell apart for a curve to have a course: mean, trend and bend.
-const COURSE: usize = 3;
+pub(super) const COURSE: usize = 3;
 
 /// The mean is found where it moves by less than this share of its standard deviation. At kinks of a spline it may go to and
 /// fro: after so many steps it is close enough, or there is none.
@@ -23,9 +23,13 @@ const MEAN_FOUND: f64 = 0.05;
 const CLOSE: f64 = 0.5;
 const MOST_MEANS: usize = 16;
 
-/// On the way to the mean positions are corrected for the grid at every step; forces, which the grid hardly changes, once
-/// the curve moves by less than this share, and again if it has moved by more since.
-const CORRECTED_AGAIN: f64 = 0.05;
+/// Values are corrected for the grid where the curve moves by less than this share, and again if it has moved by more since:
+/// positions, which the grid changes more, sooner than forces. In between the objective stays one function.
+const FORCES_AGAIN: f64 = 0.05;
+const POSITIONS_AGAIN: f64 = 0.01;
+
+/// Shares of a step that are tried after one that was accepted.
+const SHARES: [f64; 2] = [0.05, 4.0];
 
 /// Increase of ‖r/σ‖² that makes a step to the mean too long.
 const WORSE: f64 = 9.0;
@@ -67,6 +71,30 @@ struct Mean {
     outcome: Outcome,
     posterior: Posterior,
     noise: f64,
+    /// The mean that the linear model promises.
+    next: DVector<f64>,
+    /// The equilibria here.
+    states: States,
+}
+
+impl Mean {
+    /// The sum of squares beyond which a step from here is too long.
+    fn most(&self) -> f64 {
+        self.outcome.sum_of_squares + WORSE * self.noise.powi(2)
+    }
+
+    /// The share of the way to go where the promised mean moves against the point (Barzilai and Borwein 1988).
+    fn share_after(&self, last: &Self) -> f64 {
+        let moved = &self.outcome.point - &last.outcome.point;
+        let turned = (&self.next - &self.outcome.point) - (&last.next - &last.outcome.point);
+        let share = -moved.dot(&turned) / turned.norm_squared();
+        if share > 0.0 { share.clamp(SHARES[0], SHARES[1]) } else { 1.0 }
+    }
+
+    /// A share of the way to the next mean.
+    fn towards(&self, share: f64) -> DVector<f64> {
+        self.outcome.point.lerp(&self.next, share)
+    }
 }
 
 /// The mean over all descriptions of a curve's course, with all control points; `None` where it has none: the variant has
@@ -87,28 +115,31 @@ pub(super) fn average(
     }
     let unknowns = resampled(simulation, start, points)?;
     let domain = domain_of(&unknowns, settings, lowest_tangents)?;
-    simulation.set_unknowns(unknowns.clone());
-    let at_every_step = simulation.task().objective == Objective::Positions;
-    if at_every_step {
-        simulation.correct();
-    }
+    let positions = simulation.task().objective == Objective::Positions;
+    let again = if positions { POSITIONS_AGAIN } else { FORCES_AGAIN };
     let mut point = unknowns.values();
+    let mut corrects = positions;
     let mut corrected_at: Option<DVector<f64>> = None;
     let mut found: Option<Mean> = None;
     let mut close = false;
-    let mut most: Option<f64> = None;
+    let mut share = 1.0;
     for _ in 0..MOST_MEANS {
+        simulation.set_unknowns(unknowns.with_values(&point)?);
+        if corrects {
+            simulation.correct();
+        }
         let values = match simulation.evaluate(&point, true) {
             Ok(Evaluation::Values { residual, jacobian: Some(jacobian) }) => Some((residual, jacobian)),
             _ => None,
         };
-        let near = values.filter(|(residual, _)| most.is_none_or(|most| residual.norm_squared() <= most));
-        let Some((residual, jacobian)) = near else {
-            // Too far for the linear model: half the way.
-            match &found {
-                Some(last) => point = 0.5 * (&point + &last.outcome.point),
-                None => return Ok(None),
-            }
+        let most = found.as_ref().filter(|_| !corrects).map_or(f64::INFINITY, Mean::most);
+        let Some((residual, jacobian)) = values.filter(|(residual, _)| residual.norm_squared() <= most)
+        else {
+            // Too far for the linear model: half the way, from where it was found.
+            let Some(last) = &found else { return Ok(None) };
+            share *= 0.5;
+            point = last.towards(share);
+            simulation.return_to(&last.states);
             continue;
         };
         let felt = (&jacobian * &point).norm() >= FELT * residual.norm();
@@ -128,26 +159,22 @@ pub(super) fn average(
         };
         close = within(CLOSE);
         let settled = within(MEAN_FOUND);
-        let outcome = Outcome::at(point.clone(), residual, jacobian, Status::MeanFound, Vec::new());
-        most = Some(outcome.sum_of_squares + WORSE * noise.powi(2));
-        found = Some(Mean { outcome, posterior, noise });
+        if corrects {
+            corrected_at = Some(point.clone());
+        }
         let moved = |at: &DVector<f64>| (&next - at).amax() / next.amax();
-        let once = simulation.is_corrected() && !at_every_step;
-        let stale = once && corrected_at.as_ref().is_none_or(|at| moved(at) > CORRECTED_AGAIN);
+        let stale = simulation.is_corrected() && corrected_at.as_ref().is_none_or(|at| moved(at) > again);
+        corrects = stale && (settled || moved(&point) <= again);
+        let outcome = Outcome::at(point, residual, jacobian, Status::MeanFound, Vec::new());
+        let mean = Mean { outcome, posterior, noise, next, states: simulation.states() };
+        share = found.as_ref().filter(|_| !corrects).map_or(1.0, |last| mean.share_after(last));
+        point = mean.towards(share);
+        found = Some(mean);
         if settled && !stale {
             break;
         }
-        let step = moved(&point);
-        point = next;
-        simulation.set_unknowns(unknowns.with_values(&point)?);
-        if at_every_step || stale && step <= CORRECTED_AGAIN {
-            simulation.correct();
-            corrected_at = Some(point.clone());
-            // Another objective.
-            most = None;
-        }
     }
-    let Some(Mean { outcome, posterior, noise }) = found.filter(|_| close) else { return Ok(None) };
+    let Some(Mean { outcome, posterior, noise, .. }) = found.filter(|_| close) else { return Ok(None) };
     let unknowns = unknowns.with_values(&outcome.point)?;
     let rms = simulation.unit() * (outcome.sum_of_squares / outcome.residual.len() as f64).sqrt();
     let status = outcome.status.to_string();

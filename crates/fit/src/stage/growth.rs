@@ -5,7 +5,7 @@
 //!
 //! Source: Miguel et al. 2012, §5.2; the second try is ours, unless [`GrowthRule`](super::GrowthRule) says otherwise.
 
-use super::average::{Average, Averaged, FELT, average};
+use super::average::{Average, Averaged, COURSE, FELT, average};
 use super::growth_rule::by_chance;
 use super::level::{Level, fit_level, most_points, points_of, resampled};
 use super::settings::Settings;
@@ -89,6 +89,16 @@ pub fn grow(
         if points == 1 && !felt {
             let stopped = "a constant stiffness hardly changes the simulated values".to_string();
             return Ok(Growth { unknowns, outcome, domain, average: None, levels, stopped });
+        }
+        // The mean needs no more than a start that has a course. Robust weights need the best one.
+        if points == COURSE && settings.robust.is_none() {
+            let states = simulation.states();
+            if let Some(averaged) = average(simulation, &unknowns, settings, lowest_tangents)? {
+                let stopped =
+                    format!("the mean over constant, straight and bent courses with {most} control points");
+                return Ok(Growth::of(averaged, levels, stopped));
+            }
+            simulation.return_to(&states);
         }
         let all = points >= most;
         let noise = variance_left(&outcome.residual, unknowns.len(), simulation.noise_is_known());

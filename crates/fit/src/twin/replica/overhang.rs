@@ -36,7 +36,8 @@ const FEWEST_CELLS: f64 = 4.0;
 /// Most cells.
 const MOST_CELLS: f64 = 192.0;
 
-/// Largest difference of the slope at the edge from the measured one, rad: noise of 0.1 mm tilts a millimetre by 0.1.
+/// Largest difference of the slope at the edge from the measured one, rad: noise of 0.1 mm tilts a millimetre by 0.1. A
+/// slope between lines that lie far apart is known no better than the sheet turns from one to the next.
 const WANDER: f64 = 0.2;
 
 /// Fewest cells of the sheet's own grid past the edge: two held lines, and two bends.
@@ -56,6 +57,8 @@ pub struct Overhang {
     pub length: f64,
     /// Pose at the start.
     pub pose: EdgePose,
+    /// Largest difference of the slope from that, rad.
+    wander: f64,
     /// Points too far off the profile to be used.
     pub left_out: usize,
     /// Flexural rigidity by Peirce's formula, N·m, and a typical curvature, 1/m.
@@ -88,6 +91,11 @@ pub(super) fn peirce(chord: Vector2<f64>, length: f64, weight: &Vector3<f64>) ->
     let angle = (drop / chord.norm()).asin().clamp(0.01, 1.5);
     let rigidity = weight.norm() * length.powi(3) * (0.5 * angle).cos() / (8.0 * angle.tan());
     [rigidity, (2.0 * angle / length).max(f64::MIN_POSITIVE)]
+}
+
+/// Slopes of the segments between places, rad.
+fn slopes(places: &[Vector2<f64>]) -> Vec<f64> {
+    places.windows(2).map(|pair| pair[1] - pair[0]).map(|step| step.y.atan2(step.x)).collect()
 }
 
 impl Overhang {
@@ -155,9 +163,12 @@ impl Overhang {
         let cell = grid.cell()[0];
         let places: Vec<Vector2<f64>> =
             (0..=cells).map(|line| profile.at(edge + (line as f64 - 0.5) * cell)).collect();
-        let angles: Vec<f64> =
-            places.windows(2).map(|pair| pair[1] - pair[0]).map(|step| step.y.atan2(step.x)).collect();
+        let angles = slopes(&places);
         let pose = EdgePose { place: start, slope: angles[0], ..EdgePose::default() };
+        let beside = past.saturating_sub(1)..profile.len().min(past + 2);
+        let beside: Vec<Vector2<f64>> = beside.map(|line| profile.median(line).1).collect();
+        let chords: Vec<f64> = slopes(&beside);
+        let turn = chords.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
         let lateral = seen.iter().map(|seen| seen.position.y - seen.across).sum::<f64>() / seen.len() as f64;
         let left_out = strays.iter().filter(|&&stray| stray).count();
         let overhang = Self {
@@ -165,6 +176,7 @@ impl Overhang {
             grid,
             length,
             pose,
+            wander: WANDER + turn,
             left_out,
             peirce,
             mesh,
@@ -181,13 +193,14 @@ impl Overhang {
     /// sheet instead.
     pub fn pose_after(&self, pose: &EdgePose, step: &[f64]) -> EdgePose {
         let after = pose.after(step);
-        EdgePose { slope: after.slope.clamp(self.pose.slope - WANDER, self.pose.slope + WANDER), ..after }
+        let [least, most] = [-self.wander, self.wander].map(|off| self.pose.slope + off);
+        EdgePose { slope: after.slope.clamp(least, most), ..after }
     }
 
     /// True if a step would take the slope farther from the measured one than it may be.
     pub fn is_pinned(&self, pose: &EdgePose, step: &[f64]) -> bool {
         let off = pose.slope - self.pose.slope;
-        off.abs() >= WANDER * (1.0 - 1e-9) && off * step[4] > 0.0
+        off.abs() >= self.wander * (1.0 - 1e-9) && off * step[4] > 0.0
     }
 
     /// The mesh at rest.
