@@ -8,6 +8,9 @@
 //!
 //! The sum is added to what is simulated on the working grid, and the fit goes on. Between clips a few frames of a
 //! sequence are corrected, the others by their extension in between. Source: Fox 1947; Pereyra 1966.
+//!
+//! Off a table the correction is that of a smooth curve. A zigzag that the shapes hardly show changes the correction as much
+//! as them: corrected under itself it would stay (seen with nine points 16 1/m apart: ±5 % of the stiffness).
 
 use super::frames::Equilibria;
 use super::observation::{Objective, Observation};
@@ -67,9 +70,10 @@ impl<'a> Equilibria<'a> {
         let curves = self.curves();
         let corrections: Vec<Option<Correction>> = match self.task.objective {
             Objective::Positions => {
+                let smooth = self.unknowns.smooth().beside(&self.task.known);
                 let frames = self.frames.par_iter().zip(&self.states);
                 frames
-                    .map(|(&(index, place), state)| self.of_overhang(&curves, index, place, state))
+                    .map(|(&(index, place), state)| self.of_overhang(&smooth, index, place, state))
                     .collect()
             }
             Objective::Forces => {

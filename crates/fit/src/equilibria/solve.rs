@@ -130,6 +130,8 @@ impl<'a> Equilibria<'a> {
                 // Too long: half the step, from where it started.
                 Some((from, step)) if next.residual > step.residual => {
                     step.step *= 0.5;
+                    // What half a step leaves tells nothing of how slow it is.
+                    step.removed = f64::INFINITY;
                     result.state.clone_from(from);
                 }
                 _ => last = Some((result.state.clone(), next)),
@@ -242,7 +244,7 @@ impl<'a> Equilibria<'a> {
                     eliminate(rows, &(own * &prior.spread), Prior::Unit)
                 };
                 let (way, by_own) = self.weighted(&rows, &own);
-                let residual = way.column(0).norm().hypot(prior.deviations(&at).norm());
+                let residual = rows.column(0).norm().hypot(prior.deviations(&at).norm());
                 let found = eliminated(way, &by_own);
                 let step = prior.errors(&found.step) - &at;
                 let removed = (by_own * &step).norm().hypot((&found.step - prior.deviations(&at)).norm());
@@ -287,7 +289,7 @@ impl<'a> Equilibria<'a> {
         let rounding = ROUNDING * (measurements as f64).sqrt() * overhang.length / self.scale(replica);
         if found.removed > FOUND * size + rounding && !ends(found.removed, size) {
             state.sensitivity = sensitivity;
-            let residual = size.hypot(found.removed);
+            let residual = of_pose.column(0).norm();
             return Some(PoseStep { step: found.step, removed: found.removed, residual });
         }
         let bent = self.task.robust.map(|_| eliminate(of_pose, &own, Prior::Flat));

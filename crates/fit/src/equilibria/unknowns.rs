@@ -82,6 +82,21 @@ impl Unknowns {
         unknowns.collect::<Result<_>>().map(Self)
     }
 
+    /// The same curves without the fastest of their changes, from control point to control point, k̃ᵢ = (kᵢ₋₁ + 2kᵢ + kᵢ₊₁)/4.
+    pub fn smooth(&self) -> Self {
+        let smooth = |unknown: &Unknown| {
+            let given = unknown.curve.stiffnesses();
+            let mut smooth = given.to_vec();
+            for (k, near) in smooth.iter_mut().skip(1).zip(given.windows(3)) {
+                *k = 0.25 * (near[0] + 2.0 * near[1] + near[2]);
+            }
+            // Means of valid stiffnesses are valid.
+            let curve = unknown.curve.with_stiffnesses(smooth).unwrap_or_else(|_| unknown.curve.clone());
+            Unknown { curve, ..unknown.clone() }
+        };
+        Self(self.0.iter().map(smooth).collect())
+    }
+
     /// The curves in place, beside those that are known.
     pub fn beside(&self, known: &Curves) -> Curves {
         let mut curves = known.clone();
@@ -89,5 +104,21 @@ impl Unknowns {
             components.iter().for_each(|&component| curves.set(component, curve.clone()));
         }
         curves
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloth_sim::curve::{NegativeStrain, equidistant};
+
+    #[test]
+    fn a_smooth_curve_keeps_a_line_and_has_no_zigzag() {
+        let of = |values: [f64; 5]| {
+            let curve = StiffnessCurve::new(equidistant(5, 1.0), values.to_vec(), NegativeStrain::Odd);
+            Unknowns::one(&[Component::BendWarp], curve.unwrap()).smooth().values()
+        };
+        assert_eq!(of([1.0, 2.0, 3.0, 4.0, 5.0]).as_slice(), [1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(of([2.0, 4.0, 2.0, 4.0, 2.0]).as_slice(), [2.0, 3.0, 3.0, 3.0, 2.0]);
     }
 }

@@ -113,6 +113,23 @@ pub(super) fn average(
     if !settings.averaged || !one || points < COURSE || simulation.measurements() <= points {
         return Ok(None);
     }
+    let (before, states) = (simulation.unknowns().clone(), simulation.states());
+    let averaged = search(simulation, start, points, settings, lowest_tangents)?;
+    if averaged.is_none() {
+        simulation.set_unknowns(before);
+        simulation.return_to(&states);
+    }
+    Ok(averaged)
+}
+
+/// Steps to the mean; `None` if they do not settle.
+fn search(
+    simulation: &mut Equilibria<'_>,
+    start: &Unknowns,
+    points: usize,
+    settings: &Settings,
+    lowest_tangents: &[f64],
+) -> Result<Option<Averaged>> {
     let unknowns = resampled(simulation, start, points)?;
     let domain = domain_of(&unknowns, settings, lowest_tangents)?;
     let positions = simulation.task().objective == Objective::Positions;
@@ -148,8 +165,8 @@ pub(super) fn average(
         }
         let noise = simulation.scatter(&residual, &jacobian).white();
         let (scaled, slope) = (&residual / noise, &jacobian / noise);
-        let Some(posterior) = Posterior::new(&scaled, &slope, &point) else { break };
-        let Ok(next) = domain.nearest(&posterior.mean) else { break };
+        let Some(posterior) = Posterior::new(&scaled, &slope, &point) else { return Ok(None) };
+        let Ok(next) = domain.nearest(&posterior.mean) else { return Ok(None) };
         let within = |share: f64| {
             let near = |i: usize| {
                 let deviation = posterior.covariance[(i, i)].max(0.0).sqrt();
@@ -162,19 +179,26 @@ pub(super) fn average(
         if corrects {
             corrected_at = Some(point.clone());
         }
-        let moved = |at: &DVector<f64>| (&next - at).amax() / next.amax();
-        let stale = simulation.is_corrected() && corrected_at.as_ref().is_none_or(|at| moved(at) > again);
-        corrects = stale && (settled || moved(&point) <= again);
+        let apart = |a: &DVector<f64>, b: &DVector<f64>| (a - b).amax() / a.amax();
+        // A step that is not taken makes no correction stale.
+        let end = if settled { &point } else { &next };
+        let stale =
+            simulation.is_corrected() && corrected_at.as_ref().is_none_or(|at| apart(end, at) > again);
+        let renewed = std::mem::replace(&mut corrects, stale && (settled || apart(&next, &point) <= again));
         let outcome = Outcome::at(point, residual, jacobian, Status::MeanFound, Vec::new());
         let mean = Mean { outcome, posterior, noise, next, states: simulation.states() };
-        share = found.as_ref().filter(|_| !corrects).map_or(1.0, |last| mean.share_after(last));
-        point = mean.towards(share);
+        // Under another correction the promises of two steps are not alike.
+        let alike = found.as_ref().filter(|_| !renewed && !corrects);
+        share = alike.map_or(1.0, |last| mean.share_after(last));
+        point = domain.nearest(&mean.towards(share)).unwrap_or_else(|_| mean.next.clone());
         found = Some(mean);
         if settled && !stale {
             break;
         }
     }
-    let Some(Mean { outcome, posterior, noise, .. }) = found.filter(|_| close) else { return Ok(None) };
+    let corrected = corrected_at.is_some() || !simulation.is_corrected();
+    let found = found.filter(|_| close && corrected);
+    let Some(Mean { outcome, posterior, noise, .. }) = found else { return Ok(None) };
     let unknowns = unknowns.with_values(&outcome.point)?;
     let rms = simulation.unit() * (outcome.sum_of_squares / outcome.residual.len() as f64).sqrt();
     let status = outcome.status.to_string();

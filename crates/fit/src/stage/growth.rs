@@ -91,14 +91,13 @@ pub fn grow(
             return Ok(Growth { unknowns, outcome, domain, average: None, levels, stopped });
         }
         // The mean needs no more than a start that has a course. Robust weights need the best one.
-        if points == COURSE && settings.robust.is_none() {
-            let states = simulation.states();
-            if let Some(averaged) = average(simulation, &unknowns, settings, lowest_tangents)? {
-                let stopped =
-                    format!("the mean over constant, straight and bent courses with {most} control points");
-                return Ok(Growth::of(averaged, levels, stopped));
-            }
-            simulation.return_to(&states);
+        if points == COURSE
+            && settings.robust.is_none()
+            && let Some(averaged) = average(simulation, &unknowns, settings, lowest_tangents)?
+        {
+            let stopped =
+                format!("the mean over constant, straight and bent courses with {most} control points");
+            return Ok(Growth::of(averaged, levels, stopped));
         }
         let all = points >= most;
         let noise = variance_left(&outcome.residual, unknowns.len(), simulation.noise_is_known());

@@ -165,10 +165,10 @@ impl Overhang {
             (0..=cells).map(|line| profile.at(edge + (line as f64 - 0.5) * cell)).collect();
         let angles = slopes(&places);
         let pose = EdgePose { place: start, slope: angles[0], ..EdgePose::default() };
-        let beside = past.saturating_sub(1)..profile.len().min(past + 2);
+        let from = past.saturating_sub(1);
+        let beside = from..profile.len().min(from + 3);
         let beside: Vec<Vector2<f64>> = beside.map(|line| profile.median(line).1).collect();
-        let chords: Vec<f64> = slopes(&beside);
-        let turn = chords.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        let turn = slopes(&beside).windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
         let lateral = seen.iter().map(|seen| seen.position.y - seen.across).sum::<f64>() / seen.len() as f64;
         let left_out = strays.iter().filter(|&&stray| stray).count();
         let overhang = Self {
