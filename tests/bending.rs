@@ -93,7 +93,7 @@ fn the_heavy_elastica_comes_back() {
         let truth = rigidity(gamma);
         for (noise, allowed) in [(None, exact), (Some(3), 0.005)] {
             let moment = |curvature: f64| truth * curvature;
-            let report = fit_bending(Kind::BendWeft, &moment, noise, Variant::Linear, Model::Stvk);
+            let report = fit_bending(Kind::BendWeft, &moment, noise, Variant::Linear, Model::STVK);
             let stage = report.stage(Component::BendWeft).unwrap();
             let found = stage.curve.samples[100].stiffness;
             println!(
@@ -137,7 +137,7 @@ fn a_moment_law_that_is_no_line_comes_back() {
         (Kind::BendBias, Component::BendDiagonal),
     ] {
         for (noise, allowed) in [(None, 0.01), (Some(5), 0.015)] {
-            let report = fit_bending(kind, &moment, noise, Variant::Orthotropic, Model::Stvk);
+            let report = fit_bending(kind, &moment, noise, Variant::Orthotropic, Model::STVK);
             let stage = report.stage(component).unwrap();
             let error = stress_error(&stage.curve.samples, &moment);
             let inside = coverage(&stage.curve.samples, &moment);
@@ -183,7 +183,7 @@ fn soft_sheets_come_back_through_noise() {
 #[test]
 fn what_lies_flat_is_not_observed() {
     let moment = |curvature: f64| 1e-5 * curvature;
-    let report = fit_bending(Kind::BendWeft, &moment, Some(1), Variant::Linear, Model::Stvk);
+    let report = fit_bending(Kind::BendWeft, &moment, Some(1), Variant::Linear, Model::STVK);
     // A sheet bent along weft does not bend its diagonal hinges.
     assert!(report.stage(Component::BendDiagonal).is_none());
     assert!(report.curves().get(Component::BendDiagonal).is_none());

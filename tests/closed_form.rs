@@ -74,9 +74,9 @@ fn five_points_meet_laws_that_are_no_spline() {
 fn bars_of_any_depth_leave_the_cloth_between_them() {
     let (_, law, largest, allowed, _) = LAWS[0];
     for grip in [0.01, 0.02] {
-        let set = UniformStretch { model: Model::Stvk, law: &law, largest, frames: 40, grip, noise: None }
+        let set = UniformStretch { model: Model::STVK, law: &law, largest, frames: 40, grip, noise: None }
             .measure();
-        let error = stress_error(&fit_weft(&set, Model::Stvk, [9, 9]).curve.samples, &law);
+        let error = stress_error(&fit_weft(&set, Model::STVK, [9, 9]).curve.samples, &law);
         println!("bars {} mm deep: {:.3} %", 1e3 * grip, 100.0 * error);
         assert!(error <= allowed);
     }
@@ -90,7 +90,7 @@ fn a_law_that_a_line_does_not_improve_gets_its_points() {
         let e = strain / largest;
         40.0 * (e + (0.4 + (e - 4.0 / 3.0) * e) * e)
     };
-    let model = Model::SoftConstraint;
+    let model = Model::SOFT_CONSTRAINT;
     let report = fit_weft(&measure(model, &law, largest, None), model, [9, 9]);
     assert!(report.levels[1].rms > 0.99 * report.levels[0].rms);
     let error = stress_error(&report.curve.samples, &law);
@@ -106,7 +106,7 @@ fn mean_coverage(seeds: u64, nodes: [usize; 2]) -> f64 {
     let mut flagged = 0;
     let sum: f64 = (0..seeds)
         .map(|seed| {
-            let report = fit_weft(&measure(Model::Stvk, &law, 0.06, Some(seed)), Model::Stvk, nodes);
+            let report = fit_weft(&measure(Model::STVK, &law, 0.06, Some(seed)), Model::STVK, nodes);
             flagged += usize::from(report.scatter.misfit > 0.0);
             coverage(&report.curve.samples, &law)
         })

@@ -57,7 +57,7 @@ impl Size {
 }
 
 fn curve(component: Component, strains: Vec<f64>, stiffnesses: &[f64]) -> (Component, StiffnessCurve) {
-    let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+    let negative = Model::STVK.negative_strain(component, Compression::ZeroStrain);
     (component, StiffnessCurve::new(strains, stiffnesses.to_vec(), negative).unwrap())
 }
 

@@ -44,14 +44,14 @@ fn springs_droop_as_continua_do_where_they_are_as_stiff() {
     let table = [20.0, 400.0].map(|stretch| {
         let shear = stretch / 50.0;
         let found = [
-            droop(&scene, Model::Stvk, stretch, shear),
-            droop(&scene, Model::SoftConstraint, stretch, shear),
-            droop(&scene, Model::Springs, stretch, 4.0 * shear),
+            droop(&scene, Model::STVK, stretch, shear),
+            droop(&scene, Model::SOFT_CONSTRAINT, stretch, shear),
+            droop(&scene, Model::SPRINGS, stretch, 4.0 * shear),
         ];
         println!("{stretch} N/m: {found:.4?}");
         assert!(found.iter().all(|droop| (droop / found[0] - 1.0).abs() < 0.07), "{found:?}");
         // Diagonals with the shear stiffness of the continuum are too soft.
-        assert!(droop(&scene, Model::Springs, stretch, shear) > 1.3 * found[0]);
+        assert!(droop(&scene, Model::SPRINGS, stretch, shear) > 1.3 * found[0]);
         found
     });
     for (soft, stiff) in table[0].iter().zip(table[1]) {

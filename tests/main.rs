@@ -17,6 +17,7 @@ mod recovery;
 mod repair;
 mod rig;
 mod shear;
+mod sheet;
 mod starts;
 mod strip_faults;
 mod trusted;

@@ -83,7 +83,7 @@ fn same_curves(what: &str, image: impl Fn(Component) -> Image, change: impl Fn(&
             |report: &FitReport| report.stages.iter().any(|stage| stage.interventions.matrices_damped > 0);
         let [curve_limit, band_limit] =
             if wrinkled(before) || wrinkled(&after) { [1e-4, 0.01] } else { [1e-6, 1e-4] };
-        for component in Component::ALL {
+        for component in Model::STVK.components() {
             let Image { component: other, strain, stress } = image(component);
             let [Some(before), Some(after)] = [before.stage(component), after.stage(other)] else {
                 panic!("{what}: no {component}, or no {other}");
@@ -209,7 +209,7 @@ fn mirror(set: &mut MeasurementSet, normal: Vector3<f64>) {
 fn all_curves_come_of_the_fixtures() {
     for (set, report) in &*MEASURED {
         assert_eq!(report.notices, []);
-        for component in Component::ALL {
+        for component in Model::STVK.components() {
             assert!(report.stage(component).unwrap().curve.observed, "{}: {component}", set.fabric.name);
         }
     }
@@ -303,7 +303,7 @@ fn frames_that_stand_twice_make_bands_narrower_by_root_two_but_for_misfit() {
         }
         let after = fitted_by(&set, false);
         assert_eq!(after.notices, before.notices);
-        for component in Component::ALL {
+        for component in Model::STVK.components() {
             let [before, after] = [&before, &after].map(|report| report.stage(component).unwrap());
             let grown = after.curve.points.len() > before.curve.points.len();
             let (curve, narrower) =
@@ -358,7 +358,7 @@ fn units_of_length_and_force_do_not_matter() {
 /// A strip of 50 N/m pulled to a tenth, with exact forces and no shapes: only the start of its solves distinguishes
 /// it from a crumpled one.
 fn strip() -> MeasurementSet {
-    UniformStretch { model: Model::Stvk, law: &|e| 50.0 * e, largest: 0.1, grip: 0.0, frames: 5, noise: None }
+    UniformStretch { model: Model::STVK, law: &|e| 50.0 * e, largest: 0.1, grip: 0.0, frames: 5, noise: None }
         .measure()
 }
 

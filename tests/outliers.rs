@@ -39,7 +39,7 @@ fn wrong_forces_hardly_move_the_curve() {
         let mut normal = || StandardNormal.sample(&mut random);
         let noise = Some((3e-3, &mut normal as &mut dyn FnMut() -> f64));
         let stretch =
-            UniformStretch { model: Model::Stvk, law: &law, largest: 0.25, frames: 40, grip: 0.0, noise };
+            UniformStretch { model: Model::STVK, law: &law, largest: 0.25, frames: 40, grip: 0.0, noise };
         let mut set = stretch.measure();
         let sequence = &mut set.sequences[0];
         sequence.noise = sequence.noise.filter(|_| known);

@@ -55,7 +55,7 @@ fn denim_comes_back() {
         let set = measure(&Rig { noise, ..rig() });
         for component in [Component::StretchWeft, Component::StretchWarp] {
             let report =
-                fit(&set, component, &settings(Model::Stvk), &mut Watch::default()).unwrap().unwrap();
+                fit(&set, component, &settings(Model::STVK), &mut Watch::default()).unwrap().unwrap();
             println!("{component}, noise {noise}: stress within {:.2} %", 100.0 * error(&report));
             assert!(report.converged && error(&report) <= allowed);
             assert_eq!(report.curve.curve.len(), 5);
@@ -72,9 +72,9 @@ fn denim_comes_back() {
 fn denim_comes_back_as_published() {
     let set = measure(&rig());
     for component in [Component::StretchWeft, Component::StretchWarp] {
-        let published = settings(Model::Stvk).as_published();
+        let published = settings(Model::STVK).as_published();
         let report = fit(&set, component, &published, &mut Watch::default()).unwrap().unwrap();
-        let default = fit(&set, component, &settings(Model::Stvk), &mut Watch::default()).unwrap().unwrap();
+        let default = fit(&set, component, &settings(Model::STVK), &mut Watch::default()).unwrap().unwrap();
         let [spent, less] = [&report, &default].map(|report| report.counters.factorisations);
         println!(
             "{component}: stress within {:.2} %, {spent} factorisations, not {less}",
@@ -88,7 +88,7 @@ fn denim_comes_back_as_published() {
 #[test]
 fn other_models_meet_the_forces_that_the_truth_gives() {
     let set = measure(&rig());
-    for model in [Model::SoftConstraint, Model::Springs] {
+    for model in [Model::SOFT_CONSTRAINT, Model::SPRINGS] {
         let report = fit_weft(&set, model);
         let sequence = &report.sequences[0];
         println!("{model}: rms {:.2e} N of {:.1} N", sequence.force_rms.unwrap(), sequence.force_largest);
@@ -99,7 +99,7 @@ fn other_models_meet_the_forces_that_the_truth_gives() {
 #[test]
 fn noise_in_the_clips_is_borne_and_told_in_the_band() {
     let set = measure(&Rig { clip_noise: true, ..rig() });
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     let curves = denim().curves().unwrap();
     let truth = curves.get(Component::StretchWeft).unwrap();
     let inside = coverage(&report.curve.samples, &|strain| truth.stress(strain));
@@ -126,7 +126,7 @@ fn weight_across_the_sheet_makes_it_sag_and_is_borne() {
             cord.force.z += 9.81 * (share + sequence.clips[cord.clip].mass_kg);
         }
     }
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     println!(
         "sagging: stress within {:.2} %, rms {:.2e} N",
         100.0 * error(&report),
@@ -159,7 +159,7 @@ fn the_mass_of_a_clip_is_told_from_the_pull_of_the_cloth() {
     let [told, untold] = [0.0101, 0.0].map(|mass| {
         let clips = set.sequences.iter_mut().flat_map(|sequence| &mut sequence.clips);
         clips.for_each(|clip| clip.mass_kg = mass);
-        stress_error(&fit_weft(&set, Model::Stvk).curve.samples, &|strain| truth.stress(strain))
+        stress_error(&fit_weft(&set, Model::STVK).curve.samples, &|strain| truth.stress(strain))
     });
     println!("stress within {:.2} %, without the mass {:.2} %", 100.0 * told, 100.0 * untold);
     assert!(told < 0.01 && untold > 0.03);
@@ -182,7 +182,7 @@ fn three_load_cycles_tell_what_one_tells() {
         );
         assert_eq!(frame.poses, same.poses);
     }
-    let [first, all] = [&one, &three].map(|set| fit_weft(set, Model::Stvk).curve);
+    let [first, all] = [&one, &three].map(|set| fit_weft(set, Model::STVK).curve);
     let apart = first.samples.iter().zip(&all.samples).map(|(one, three)| {
         let [low, high] = one.band.unwrap();
         assert!(low <= three.stress && three.stress <= high, "{one:?} {three:?}");
@@ -196,7 +196,7 @@ fn three_load_cycles_tell_what_one_tells() {
     for cycle in 0..3 {
         let mut set = three.clone();
         set.sequences[0].frames.retain(|frame| frame.cycle == Some(cycle) && frame.poses != *top);
-        let hysteresis = fit_weft(&set, Model::Stvk).sequences[0].hysteresis.unwrap();
+        let hysteresis = fit_weft(&set, Model::STVK).sequences[0].hysteresis.unwrap();
         let ratio = hysteresis.loading / hysteresis.unloading;
         println!("cycle {cycle}: loading {ratio:.3} of unloading");
         assert!((ratio / denim().loading_ratio - 1.0).abs() < 0.01);
@@ -206,7 +206,7 @@ fn three_load_cycles_tell_what_one_tells() {
 #[test]
 fn a_specimen_anywhere_in_space_fits_alike() {
     let set = measure(&rig());
-    let straight = fit_weft(&set, Model::Stvk);
+    let straight = fit_weft(&set, Model::STVK);
     let mut turned = set.clone();
     let rotation = Rotation3::new(Vector3::new(0.7, -1.1, 0.4));
     let shift = Vector3::new(0.3, 0.1, -0.2);
@@ -223,7 +223,7 @@ fn a_specimen_anywhere_in_space_fits_alike() {
             frame.positions.iter_mut().flatten().for_each(|p| *p = place(p));
         }
     }
-    let report = fit_weft(&turned, Model::Stvk);
+    let report = fit_weft(&turned, Model::STVK);
     assert!(report.sequences[0].planar);
     for (a, b) in straight.curve.curve.stiffnesses().iter().zip(report.curve.curve.stiffnesses()) {
         assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
@@ -237,7 +237,7 @@ fn a_shape_with_holes_is_compared_where_it_was_seen() {
         let positions = frame.positions.as_mut().unwrap();
         positions.iter_mut().step_by(7).for_each(|p| *p = Vector3::repeat(f64::NAN));
     }
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     assert!(report.converged && error(&report) < 0.02);
     assert!(report.sequences[0].position_rms.unwrap() < 1.5e-4);
 }
@@ -251,7 +251,7 @@ fn the_curve_runs_through_the_mean_of_the_hysteresis_band() {
         let factor = if frame.phase == Some(Phase::Unloading) { 0.8 } else { 1.2 };
         frame.cords.iter_mut().for_each(|cord| cord.force *= factor);
     }
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     let hysteresis = report.sequences[0].hysteresis.unwrap();
     println!("loading {:.3}, unloading {:.3} of the curve", hysteresis.loading, hysteresis.unloading);
     assert!((hysteresis.loading / hysteresis.unloading - 1.5).abs() < 0.01);
@@ -267,7 +267,7 @@ fn what_the_frames_cannot_tell_is_said() {
         let frame = sequence.frames[8].clone();
         sequence.frames = vec![frame.clone(), frame.clone(), frame];
     }
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     // A single strain determines one number: a constant stiffness.
     assert_eq!((report.curve.curve.len(), report.curve.rank), (1, 1));
     assert!(report.sequences[0].force_rms.unwrap() < 1e-6 * report.sequences[0].force_largest);
@@ -278,7 +278,7 @@ fn a_flipped_force_sign_is_named() {
     let mut set = measure(&rig());
     let cords = set.sequences.iter_mut().flat_map(|s| &mut s.frames).flat_map(|frame| &mut frame.cords);
     cords.for_each(|cord| cord.force = -cord.force);
-    let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
+    let error = fit(&set, Component::StretchWeft, &settings(Model::STVK), &mut Watch::default()).unwrap_err();
     assert!(error.to_string().contains("its sign, or force_direction"), "{error}");
 }
 
@@ -288,9 +288,9 @@ fn a_single_flipped_force_is_pointed_at() {
     for sequence in &mut set.sequences {
         sequence.frames[9].cords.iter_mut().for_each(|cord| cord.force = -cord.force);
     }
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     assert_eq!(report.sequences[0].outliers[0], 9);
-    assert!(fit_weft(&measure(&rig()), Model::Stvk).sequences[0].outliers.is_empty());
+    assert!(fit_weft(&measure(&rig()), Model::STVK).sequences[0].outliers.is_empty());
 }
 
 #[test]
@@ -299,7 +299,7 @@ fn a_pull_along_the_other_yarns_is_named() {
     // The warp test, labelled as a weft test.
     set.sequences.retain(|sequence| sequence.name == "stretch-warp");
     set.sequences[0].kind = Kind::StretchWeft;
-    let error = fit(&set, Component::StretchWeft, &settings(Model::Stvk), &mut Watch::default()).unwrap_err();
+    let error = fit(&set, Component::StretchWeft, &settings(Model::STVK), &mut Watch::default()).unwrap_err();
     assert!(error.to_string().contains("check kind"), "{error}");
 }
 
@@ -311,7 +311,7 @@ fn too_few_frames_give_a_curve_without_a_band() {
     for frame in set.sequences.iter_mut().flat_map(|sequence| &mut sequence.frames) {
         frame.cords.truncate(1);
     }
-    let report = fit_weft(&set, Model::Stvk);
+    let report = fit_weft(&set, Model::STVK);
     assert_eq!(report.curve.curve.len(), 1);
     assert!(report.curve.samples.iter().all(|sample| sample.band.is_none()));
 }
@@ -322,7 +322,7 @@ fn a_long_strip_on_flat_cells_needs_no_steps() {
     let mut fabric = denim();
     fabric.height_m = 0.01;
     let set = rig().measure(&fabric).unwrap();
-    let settings = Settings { nodes: Some([25, 25]), ..settings(Model::Stvk) };
+    let settings = Settings { nodes: Some([25, 25]), ..settings(Model::STVK) };
     let report = fit(&set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap();
     assert!(report.converged && report.dropped.is_empty());
     assert_eq!(report.counters.iterations, 0);
@@ -330,7 +330,7 @@ fn a_long_strip_on_flat_cells_needs_no_steps() {
 
 #[test]
 fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
-    let report = fit_weft(&measure(&rig()), Model::Stvk);
+    let report = fit_weft(&measure(&rig()), Model::STVK);
     let other = measure(&Rig { seed: 77, frames: 7, ..rig() });
     let curves = Curves::from_iter([(Component::StretchWeft, report.curve.curve)]);
     let predicted = predict(
@@ -338,7 +338,7 @@ fn a_curve_predicts_a_test_that_it_was_not_fitted_to() {
         &[Kind::StretchWeft],
         &curves,
         &Default::default(),
-        &settings(Model::Stvk),
+        &settings(Model::STVK),
         &Watch::default(),
     )
     .unwrap();
@@ -353,7 +353,7 @@ fn published_constraints_allow_what_the_stable_ones_forbid() {
     // A softening law: its tangent falls below zero.
     let law = |strain: f64| 1000.0 * strain * (-strain / 0.02f64).exp();
     let set = fit_cloth_tests::UniformStretch {
-        model: Model::Stvk,
+        model: Model::STVK,
         law: &law,
         largest: 0.06,
         frames: 30,

@@ -34,7 +34,7 @@ fn fit_shear(model: Model, noise: Option<u64>, shapes: bool) -> FitReport {
 
 #[test]
 fn five_points_meet_a_law_of_shear_that_is_no_spline() {
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         for (noise, allowed) in [(None, 0.007), (Some(2), 0.015)] {
             let report = fit_shear(model, noise, true);
             let stage = report.stage(Component::Shear).unwrap();
@@ -53,7 +53,7 @@ fn five_points_meet_a_law_of_shear_that_is_no_spline() {
 
 #[test]
 fn a_sheet_that_nobody_saw_may_have_buckled_or_not() {
-    let report = fit_shear(Model::Stvk, Some(2), false);
+    let report = fit_shear(Model::STVK, Some(2), false);
     let stage = report.stage(Component::Shear).unwrap();
     let held = coverage(&stage.curve.samples, &law);
     let verdict = of_stage(stage, &report.notices);

@@ -59,7 +59,7 @@ fn stretch_ends_in_one_optimum() {
     let mut normal = || StandardNormal.sample(&mut random);
     let law = |e: f64| 8.0 * (10.0 * e).exp_m1();
     let noise = Some((3e-3, &mut normal as &mut dyn FnMut() -> f64));
-    let set = UniformStretch { model: Model::Stvk, law: &law, largest: 0.25, frames: 20, grip: 0.0, noise };
+    let set = UniformStretch { model: Model::STVK, law: &law, largest: 0.25, frames: 20, grip: 0.0, noise };
     one_optimum(&set.measure(), &stretch::plan(&[Component::StretchWeft]));
 }
 

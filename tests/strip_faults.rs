@@ -53,7 +53,7 @@ fn import(rows: &[[f64; 2]], change: impl FnOnce(StripTest) -> StripTest) -> Str
 
 fn fitted(strip: &Strip, robust: Option<f64>) -> FitReport {
     let settings =
-        Settings { model: Model::SoftConstraint, nodes: Some([5, 5]), robust, ..Settings::default() };
+        Settings { model: Model::SOFT_CONSTRAINT, nodes: Some([5, 5]), robust, ..Settings::default() };
     let set = weightless("strip", vec![strip.sequence.clone()]);
     fit(&set, &[Stage::Stretch], &Knowledge::default(), &settings, &mut Watch::default()).unwrap()
 }

@@ -16,6 +16,8 @@ pub mod picture_frame;
 pub mod random_curve;
 #[path = "support/strip.rs"]
 pub mod strip;
+#[path = "support/triangulation.rs"]
+pub mod triangulation;
 
 use cloth_data::frame::{Clip, Cord, Fabric, Frame, Kind, MeasurementSet, Noise, Sequence};
 use cloth_fit::stage::report::CurveRow;

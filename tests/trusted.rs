@@ -48,7 +48,7 @@ fn no_curve_that_passes_the_check_makes_a_simulation_diverge() {
     let (mut simulated, mut unsolved) = (0, 0);
     let mut remedies = Remedies::default();
     for seed in 0..1000 {
-        let model = if seed % 2 == 0 { Model::Stvk } else { Model::SoftConstraint };
+        let model = if seed % 2 == 0 { Model::STVK } else { Model::SOFT_CONSTRAINT };
         let given = random_curve(seed, model.negative_strain(Component::Shear, Compression::ZeroStrain));
         let curve = if check(&given, &context).is_empty() {
             given

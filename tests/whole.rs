@@ -55,9 +55,9 @@ fn comes_back(full_noise: bool, nodes: usize, [stretch, shear, bending]: [f64; 3
     for name in KnownFabric::names() {
         let fabric = KnownFabric::named(name).unwrap();
         let set = measure(&fabric, full_noise, nodes);
-        let report = fit_all(&set, Model::Stvk);
+        let report = fit_all(&set, Model::STVK);
         let truth = fabric.curves().unwrap();
-        for component in Component::ALL {
+        for component in Model::STVK.components() {
             let stage = report.stage(component).unwrap();
             let error = error(stage, &truth);
             println!(
@@ -166,10 +166,10 @@ fn stages_run_in_the_published_order_each_on_the_ones_before() {
 fn springs_predict_worst_and_the_other_models_are_alike() {
     for name in KnownFabric::names() {
         let set = coarse(name);
-        let [stvk, soft, springs] = [Model::Stvk, Model::SoftConstraint, Model::Springs].map(|model| {
+        let [stvk, soft, springs] = [Model::STVK, Model::SOFT_CONSTRAINT, Model::SPRINGS].map(|model| {
             let settings = Settings { model, nodes: Some([13, 13]), ..Settings::default() };
             let entry = run(&set, &settings, false, &mut Watch::default()).unwrap();
-            let complete = model != Model::Springs || name == "cotton-satin";
+            let complete = model != Model::SPRINGS || name == "cotton-satin";
             assert_eq!(entry.row.missing.is_empty(), complete, "{name} {model}");
             let met = entry.row.validation.unwrap();
             assert_eq!(met.dropped, 0, "{name} {model}");
@@ -203,17 +203,21 @@ fn bands_of_the_rig_hold_the_truth() {
         for name in KnownFabric::names() {
             let fabric = KnownFabric::named(name).unwrap();
             let truth = fabric.curves().unwrap();
-            let mut sums = vec![0.0; Component::ALL.len()];
+            let mut sums = vec![0.0; Model::STVK.components().len()];
             let exact = Rig { nodes: [nodes; 2], noise: false, ..Rig::default() }.measure(&fabric).unwrap();
             for seed in 1..=seeds {
-                let report = fit_all(&with_noise(&exact, 1.0, 1.0, true, seed), Model::Stvk);
-                for (sum, component) in sums.iter_mut().zip(Component::ALL) {
+                let report = fit_all(&with_noise(&exact, 1.0, 1.0, true, seed), Model::STVK);
+                for (sum, component) in sums.iter_mut().zip(Model::STVK.components()) {
                     *sum += held(report.stage(component).unwrap(), &truth) / seeds as f64;
                 }
             }
             let pooled = sums.iter().sum::<f64>() / sums.len() as f64;
-            let each: Vec<String> =
-                Component::ALL.iter().zip(&sums).map(|(c, held)| format!("{c} {held:.2}")).collect();
+            let each: Vec<String> = Model::STVK
+                .components()
+                .iter()
+                .zip(&sums)
+                .map(|(c, held)| format!("{c} {held:.2}"))
+                .collect();
             println!("{name:18} {nodes} nodes, {seeds} seeds: {pooled:.3} inside; {}", each.join(", "));
             sound &= pooled >= 0.9 && sums.iter().all(|&held| held >= 0.6);
         }

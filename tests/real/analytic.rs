@@ -10,7 +10,7 @@
 
 use cloth_sim::bending::Hinge;
 use cloth_sim::cloth::ForceScale;
-use cloth_sim::element::{Element, gather};
+use cloth_sim::element::{Element, gather, stacked};
 use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::{Diagonals, Mesh};
@@ -49,8 +49,8 @@ fn patch_forces() {
     let stiffnesses =
         [(Component::StretchWeft, 300.0), (Component::StretchWarp, 500.0), (Component::Shear, 40.0)];
     for (model, file, energy) in [
-        (Model::Stvk, "patch_forces_stvk_diag.csv", 0.007_168_772_000_000_03),
-        (Model::SoftConstraint, "patch_forces_soft_constraint.csv", 0.006_792_768_503_089_8),
+        (Model::STVK, "patch_forces_stvk_diag.csv", 0.007_168_772_000_000_03),
+        (Model::SOFT_CONSTRAINT, "patch_forces_soft_constraint.csv", 0.006_792_768_503_089_8),
     ] {
         let curves = samples::linear_curves(model, &stiffnesses).unwrap();
         let mut sample = Sample::at_rest(patch_mesh(), model, curves);
@@ -58,7 +58,7 @@ fn patch_forces() {
         let material = sample.mesh.material.clone();
         sample.start = material.iter().flat_map(|m| <[f64; 3]>::from(map * m)).collect();
         let cloth = sample.cloth().unwrap();
-        let (mut gradient, mut scale) = (vec![0.0; sample.start.len()], ForceScale::new(cloth.nodes()));
+        let (mut gradient, mut scale) = (vec![0.0; sample.start.len()], ForceScale::new(cloth.points()));
         let found = cloth.gradient(&sample.curves, &sample.start, &mut gradient, &mut scale);
         assert!((found / energy - 1.0).abs() < 1e-12, "{model}: {found}");
         for row in rows(&format!("analytic/{file}")) {
@@ -80,9 +80,9 @@ fn uniaxial_linear() {
     assert_eq!(rows.len(), 24);
     for row in rows {
         let model = match row[0].as_str() {
-            "stvk_diag" => Model::Stvk,
-            "soft_constraint" => Model::SoftConstraint,
-            "spring_continuum" => Model::Springs,
+            "stvk_diag" => Model::STVK,
+            "soft_constraint" => Model::SOFT_CONSTRAINT,
+            "spring_continuum" => Model::SPRINGS,
             other => panic!("{other}"),
         };
         let (mut sample, _) =
@@ -129,7 +129,7 @@ fn rigidity(mesh: &Mesh, cell: [f64; 2], degrees: f64) -> f64 {
         if !(inside(middle.x, cell[0]) && inside(middle.y, cell[1])) {
             return 0.0;
         }
-        let [strain] = hinge.strains(&gather(hinge.nodes, &x));
+        let [strain] = hinge.strains(&gather(stacked(hinge.nodes), &x));
         0.5 * strain * strain * Element::<4, 3, 1>::area(hinge)
     };
     let energy: f64 = Hinge::all(mesh).expect("no collapsed wing").iter().map(energy).sum();
@@ -188,8 +188,8 @@ fn catenary() {
             (Component::StretchWarp, 1e3 * weight),
             (Component::Shear, 1e3 * weight),
         ];
-        let curves = samples::linear_curves(Model::Stvk, &stretch).unwrap();
-        let mut sample = Sample::at_rest(strip(&columns, 0.02, 3), Model::Stvk, curves);
+        let curves = samples::linear_curves(Model::STVK, &stretch).unwrap();
+        let mut sample = Sample::at_rest(strip(&columns, 0.02, 3), Model::STVK, curves);
         sample.gravity = Vector3::new(0.0, 0.0, -9.8);
         sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.9999).then_some(1) });
         sample.place(|p| Vector3::new(span * p.x, p.y, -4.0 * sag * p.x * (1.0 - p.x)));

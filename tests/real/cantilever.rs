@@ -80,8 +80,8 @@ fn cloth_bends_along_the_master_curve() {
         let row = rows.iter().find(|row| (row[0] / gamma - 1.0).abs() < 1e-6).expect("a row of the curve");
         let weight = density * gravity * length;
         let stiffness = weight * length * length / gamma / 3.0;
-        let curves = samples::fabric(Model::Stvk, [1000.0 * weight, 500.0 * weight, stiffness]).unwrap();
-        let mut sample = Sample::at_rest(strip(&beam(length, 36), 0.03, 13), Model::Stvk, curves);
+        let curves = samples::fabric(Model::STVK, [1000.0 * weight, 500.0 * weight, stiffness]).unwrap();
+        let mut sample = Sample::at_rest(strip(&beam(length, 36), 0.03, 13), Model::STVK, curves);
         sample.areal_density = density;
         sample.gravity = Vector3::new(0.0, 0.0, -gravity);
         sample.hold(|p| (p.x <= 0.0).then_some(0));

@@ -22,7 +22,7 @@ fn at_rest(sample: &Sample) -> (Vec<f64>, f64, Descent) {
     let cloth = sample.cloth().unwrap();
     let mut x = sample.start.clone();
     let descent = descend(&cloth, &sample.curves, &mut x, &Settings::default(), &mut |_, _| {}).unwrap();
-    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.nodes()));
+    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.points()));
     cloth.gradient(&sample.curves, &x, &mut gradient, &mut scale);
     let force = cloth.clip_forces(&gradient)[0].y;
     (x, force, descent)

@@ -68,10 +68,10 @@ fn pendulum(amplitude: f64, stiffness: f64, integrator: Integrator, steps: f64) 
     // Mass ρA/3 at the tip, stiffness A k/L², with A = ½.
     let weight = samples::AREAL_DENSITY * 0.5 / 3.0 * GRAVITY;
     let curves = samples::linear_curves(
-        Model::SoftConstraint,
+        Model::SOFT_CONSTRAINT,
         &[(Component::StretchWeft, 2.0 * stiffness * weight), (Component::Shear, weight)],
     );
-    let mut sample = Sample::at_rest(mesh, Model::SoftConstraint, curves.unwrap());
+    let mut sample = Sample::at_rest(mesh, Model::SOFT_CONSTRAINT, curves.unwrap());
     sample.gravity = Vector3::new(0.0, 0.0, -GRAVITY);
     sample.hold(|p| (p.x == 0.0).then_some(0));
     let length = 1.0 + amplitude.cos() / stiffness;
@@ -145,12 +145,12 @@ fn a_hanging_chain_has_its_modes() {
     // Waves are slow and short near the free end: cells shorten towards it.
     let columns: Vec<f64> = (0..=60).map(|i| 1.0 - (1.0 - f64::from(i) / 60.0).powf(1.5)).collect();
     let weight = samples::AREAL_DENSITY * GRAVITY;
-    let curves = samples::fabric(Model::Stvk, [1e3 * weight, 1e2 * weight, 0.0]).unwrap();
+    let curves = samples::fabric(Model::STVK, [1e3 * weight, 1e2 * weight, 0.0]).unwrap();
     let curves = [Component::StretchWeft, Component::StretchWarp, Component::Shear]
         .into_iter()
         .filter_map(|component| Some((component, curves.get(component)?.clone())))
         .collect();
-    let mut sample = Sample::at_rest(strip(&columns, 0.05, 2), Model::Stvk, curves);
+    let mut sample = Sample::at_rest(strip(&columns, 0.05, 2), Model::STVK, curves);
     sample.gravity = Vector3::new(GRAVITY, 0.0, 0.0);
     sample.hold(|p| (p.x == 0.0).then_some(0));
     let cloth = sample.cloth().unwrap();
@@ -169,8 +169,8 @@ fn a_hanging_chain_has_its_modes() {
 #[test]
 fn a_cantilever_has_its_modes() {
     // D = 1e-5 N·m by hinges of a third of it.
-    let curves = samples::fabric(Model::Stvk, [1.0, 0.5, 1e-5 / 3.0]).unwrap();
-    let mut sample = Sample::at_rest(strip(&beam(0.1, 60), 0.01, 3), Model::Stvk, curves);
+    let curves = samples::fabric(Model::STVK, [1.0, 0.5, 1e-5 / 3.0]).unwrap();
+    let mut sample = Sample::at_rest(strip(&beam(0.1, 60), 0.01, 3), Model::STVK, curves);
     sample.hold(|p| (p.x <= 0.0).then_some(0));
     let cloth = rolled(&sample, 3);
     for row in numbers("analytic/cantilever_vibration_modes.csv") {

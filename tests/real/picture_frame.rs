@@ -122,7 +122,7 @@ fn fit_shear(set: &MeasurementSet, settings: &Settings) -> StageReport {
 #[test]
 fn five_points_find_the_shear_stress_of_wool() {
     let Known { set, law } = wool();
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let stage = fit_shear(&set, &Settings { model, ..Settings::default() });
         let sequence = &stage.sequences[0];
         let residual = sequence.force_rms.unwrap() / sequence.force_largest;

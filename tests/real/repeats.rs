@@ -24,7 +24,7 @@ use nalgebra::Vector3;
 use rand::{SeedableRng, rngs::StdRng};
 use rand_distr::{Distribution, StandardNormal};
 
-const MODEL: Model = Model::Stvk;
+const MODEL: Model = Model::STVK;
 
 /// Loadings of a strip, each followed by the next.
 const LOADINGS: [[usize; 2]; 3] = [[0, 2], [2, 4], [4, 6]];

@@ -30,7 +30,7 @@ fn five_points_find_the_stress_of_wool() {
     let separation = Extension::Separation("clip_separation_m".into());
     let test = StripTest::new(Direction::Weft, 0.1, 0.1, separation, "clip_force_N".into());
     let set = weightless("wool", vec![read_strip(&path, &test).unwrap().sequence]);
-    let settings = Settings { model: Model::Stvk, ..Settings::default() };
+    let settings = Settings { model: Model::STVK, ..Settings::default() };
     let report =
         stretch::fit(&set, Component::StretchWeft, &settings, &mut Watch::default()).unwrap().unwrap();
     let residual = report.sequences[0].force_rms.unwrap() / report.sequences[0].force_largest;

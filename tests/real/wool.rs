@@ -54,8 +54,8 @@ fn published(mode: &str, pieces: usize) -> CurveFile {
 
 fn curves(compression: Compression, pieces: usize) -> Curves {
     let curve = |&(mode, component): &(&str, Component)| {
-        let negative = Model::Stvk.negative_strain(component, compression);
-        (component, published(mode, pieces).curve(component, Model::Stvk, negative).unwrap())
+        let negative = Model::STVK.negative_strain(component, compression);
+        (component, published(mode, pieces).curve(component, Model::STVK, negative).unwrap())
     };
     MODES.iter().map(curve).collect()
 }
@@ -89,10 +89,10 @@ fn the_table_of_forces_becomes_the_published_stresses() {
             assert!((stress - expected_stress).abs() <= 1e-9 * expected_stress.abs(), "{row:?}: {stress}");
         }
         let (_, component) = MODES.into_iter().find(|(name, _)| *name == mode).unwrap();
-        let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+        let negative = Model::STVK.negative_strain(component, Compression::ZeroStrain);
         for file in [found, published(mode, 1)] {
-            let curve = file.curve(component, Model::Stvk, negative).unwrap();
-            assert_eq!(check(&curve, &context(Model::Stvk, component, None)), []);
+            let curve = file.curve(component, Model::STVK, negative).unwrap();
+            assert_eq!(check(&curve, &context(Model::STVK, component, None)), []);
         }
     }
 }
@@ -108,7 +108,7 @@ fn elongation(curves: &Curves, axis: usize, [length, width]: [f64; 2], per_width
         height: sides[1],
         diagonals: Diagonals::Alternating,
     };
-    let mut sample = Sample::at_rest(grid.mesh().unwrap(), Model::Stvk, curves.clone());
+    let mut sample = Sample::at_rest(grid.mesh().unwrap(), Model::STVK, curves.clone());
     sample.planar = true;
     sample.hold(|p| if p[axis] < 1e-9 { Some(0) } else { (p[axis] > length * (1.0 - 1e-9)).then_some(1) });
     let cloth = sample.cloth().unwrap();
@@ -185,7 +185,7 @@ fn a_hanging_strip_drops_by_its_weight() {
             let sides = if axis == 0 { [height, width] } else { [width, height] };
             let grid =
                 Grid { columns, rows, width: sides[0], height: sides[1], diagonals: Diagonals::Alternating };
-            let mut sample = Sample::at_rest(grid.mesh().unwrap(), Model::Stvk, curves.clone());
+            let mut sample = Sample::at_rest(grid.mesh().unwrap(), Model::STVK, curves.clone());
             sample.planar = true;
             sample.areal_density = density;
             sample.gravity = gravity * if axis == 0 { Vector3::x() } else { Vector3::y() };

@@ -19,7 +19,7 @@ pub fn gnatv_hang(planar: bool) -> Sample {
     let mesh = read_mesh(&data("gnatv_hang/rest_mesh.obj"), Some(axes)).expect("the sheet at rest");
     let held = [2, 3].map(|node| Held { node, clip: Some(0) }).into();
     let gravity = Vector3::new(0.0, -9.8, 0.0);
-    let at_rest = Sample::at_rest(mesh, Model::Stvk, wool());
+    let at_rest = Sample::at_rest(mesh, Model::STVK, wool());
     Sample { areal_density: 0.15, gravity, held, planar, ..at_rest }
 }
 
@@ -36,7 +36,7 @@ fn wool() -> Curves {
         let secants: Vec<f64> = above.iter().map(|[strain, stress]| stress / strain).collect();
         let strains = std::iter::once(0.0).chain(above.iter().map(|point| point[0])).collect();
         let stiffnesses = std::iter::once(secants[0]).chain(secants.iter().copied()).collect();
-        let negative = Model::Stvk.negative_strain(component, Compression::None);
+        let negative = Model::STVK.negative_strain(component, Compression::None);
         (component, StiffnessCurve::new(strains, stiffnesses, negative).expect("a curve"))
     };
     names.into_iter().map(curve).collect()

@@ -242,7 +242,7 @@ mod tests {
     fn they_are_what_holds_the_cloth_in_both_membranes() {
         let sequence = sheared(&[0.6]).sequence();
         let frame = &sequence.frames[1];
-        for model in [Model::Stvk, Model::SoftConstraint] {
+        for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
             let stiffnesses = [
                 (Component::StretchWeft, 900.0),
                 (Component::StretchWarp, 700.0),
@@ -254,7 +254,7 @@ mod tests {
             let cloth = sample.cloth().unwrap();
             let x: Vec<f64> = frame.positions.iter().flatten().flat_map(|p| <[f64; 3]>::from(*p)).collect();
             let mut gradient = vec![0.0; x.len()];
-            cloth.gradient(&sample.curves, &x, &mut gradient, &mut ForceScale::new(cloth.nodes()));
+            cloth.gradient(&sample.curves, &x, &mut gradient, &mut ForceScale::new(cloth.points()));
             let force = |vertex: usize| Vector2::new(gradient[3 * vertex], gradient[3 * vertex + 1]);
             let axes = Matrix2::from_columns(&yarns(0.6));
             for cord in &frame.cords {

@@ -300,7 +300,7 @@ impl CurveFile {
         let mut pairs = pairs.filter(|(component, model)| {
             self.measure.is_none_or(|measure| model.strain_measure(*component) == measure)
         });
-        pairs.next().unwrap_or((Component::StretchWeft, Model::Stvk))
+        pairs.next().unwrap_or((Component::StretchWeft, Model::STVK))
     }
 
     /// True if a row lies below zero.

@@ -204,6 +204,11 @@ mod tests {
 
     #[test]
     fn every_component_is_shown_by_a_test() {
-        assert!(Component::ALL.into_iter().all(|component| Kind::of(component).next().is_some()));
+        assert!(
+            cloth_sim::material::Model::STVK
+                .components()
+                .into_iter()
+                .all(|component| Kind::of(component).next().is_some())
+        );
     }
 }

@@ -5,8 +5,8 @@ mod flags;
 mod reading;
 
 pub use choice::{
-    ComponentChoice, CompressionChoice, ConstraintChoice, ModelChoice, ModelsChoice, TopicChoice,
-    VariantChoice,
+    BendingChoice, ComponentChoice, CompressionChoice, ConstraintChoice, ModelChoice, ModelsChoice,
+    TopicChoice, VariantChoice,
 };
 pub use flags::{CurveFlags, FitFlags, SetFlags, parse_kind, parse_nodes};
 pub(crate) use flags::{STABLE, refuse_within, use_threads};

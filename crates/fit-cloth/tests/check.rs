@@ -177,7 +177,7 @@ fn the_edits_of_the_source_are_one_or_two_commands() {
     let curve = |path: &Path| {
         CurveFile::read(path)
             .unwrap()
-            .curve(Component::StretchWeft, Model::Stvk, NegativeStrain::Slack)
+            .curve(Component::StretchWeft, Model::STVK, NegativeStrain::Slack)
             .unwrap()
     };
     let [given, edited] = [curve(weft.as_ref()), curve(&at.join("trend.csv"))];

@@ -267,3 +267,108 @@ fn a_sheet_far_away_hangs_as_one_nearby_does() {
         assert!(moved.zip(there).all(|(moved, there)| (moved - there).abs() < 1e-8), "{here:?} {there:?}");
     }
 }
+
+/// An overhang of 78 mm beyond a clamp, in cells of 2 mm.
+const OVERHANG: &str = "\
+name = \"overhang\"
+gravity_m_s2 = [0.0, 0.0, -9.81]
+components = [\"stretch-weft\", \"stretch-warp\", \"shear\", \"bend-weft\", \"bend-warp\", \"bend-THIRD\"]
+measure = \"droop\"
+[sheet]
+grid = { width_m = 0.08, height_m = 0.02, nodes = [41, 11], diagonals = \"forward\" }
+[[held]]
+box = { low_m = [-0.001, -0.001], high_m = [0.0021, 0.1] }
+";
+
+const CRISP: &str = "\
+name = \"crisp\"
+areal_density_kg_m2 = 0.15
+model = \"stvk\"
+[curves]
+stretch-weft = { stiffness_n_per_m = 2000.0 }
+stretch-warp = { stiffness_n_per_m = 2000.0 }
+shear = { stiffness_n_per_m = 200.0 }
+bend-weft = { rigidity_n_m = 6e-5 }
+bend-warp = { rigidity_n_m = 6e-5 }
+bend-diagonal = { rigidity_n_m = 6e-5 }
+";
+
+/// Depth of the lowest point, m, and the messages.
+fn depth(scene: &str, cloth: &str, more: &[&str]) -> (f64, String) {
+    let folder = folder(scene, cloth);
+    let output = simulate(folder.path(), &[&["--rest", "--json"], more].concat());
+    assert!(output.status.success(), "{:?}", said(&output));
+    let json = json(&output);
+    assert_eq!(json["rest_shape"], "flat");
+    (json["droop"]["depth_m"].as_f64().unwrap(), said(&output)[1].clone())
+}
+
+#[test]
+fn a_sheet_hangs_alike_on_every_triangulation() {
+    let scene = OVERHANG.replace("THIRD", "twist");
+    let written = CRISP.replace("bend-diagonal", "bend-twist");
+    let (expected, messages) = depth(&scene, &written, &[]);
+    assert!(!messages.contains("twist"), "{messages}");
+    for diagonals in ["backward", "alternating", "crossed"] {
+        let (found, messages) = depth(&scene.replace("forward", diagonals), CRISP, &["--bending", "sheet"]);
+        assert!((found / expected - 1.0).abs() < 2e-3, "{diagonals}: {found} {expected}");
+        assert!(messages.contains("bend-twist is what bend-diagonal leaves"), "{messages}");
+    }
+    // Hinges of the same rigidity do not.
+    let hinges = OVERHANG.replace("THIRD", "diagonal");
+    let (found, _) = depth(&hinges, CRISP, &["--bending", "hinges"]);
+    assert!((found / expected - 1.0).abs() > 0.05, "{found} {expected}");
+}
+
+#[test]
+fn bending_that_a_material_lacks_is_refused() {
+    let scene = OVERHANG.replace("\"bend-THIRD\"", "\"shear\"");
+    refused(&scene, CRISP, &["--rest", "--bending", "springs"], "bending", "sheet or hinges");
+    let both = format!("{CRISP}bend-twist = {{ rigidity_n_m = 6e-5 }}\n");
+    refused(&scene, &both, &["--rest"], "cloth.toml:", "bend-diagonal");
+    let half = CRISP.replace("bend-warp = { rigidity_n_m = 6e-5 }\n", "");
+    refused(&scene, &half, &["--rest", "--bending", "sheet"], "bending", "weft and warp");
+}
+
+/// Two squares of a metre that meet at a right angle, held at one of them.
+const FOLDED: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 -1\nv 1 1 -1\n\
+    vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 2 0\nvt 2 1\n\
+    f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 2/2 5/5 6/6\nf 2/2 6/6 3/3\n";
+
+#[test]
+fn a_folded_mesh_is_flat_at_rest_unless_the_scene_says_otherwise() {
+    let scene = "name = \"fold\"\ngravity_m_s2 = [0.0, 0.0, 0.0]\n[sheet]\nmesh = { file = \"fold.obj\" }\n\
+                 [[held]]\nnodes = [0, 1, 2, 3]\n";
+    let stiff = CRISP.replace("6e-5", "1.0");
+    let highest = |scene: &str, bending: &str| {
+        let folder = folder(scene, &stiff);
+        fs::write(folder.path().join("fold.obj"), FOLDED).unwrap();
+        let output = simulate(folder.path(), &["--rest", "--json", "--bending", bending]);
+        assert!(output.status.success(), "{:?}", said(&output));
+        let last = fs::read_to_string(folder.path().join("out/frames/0001.obj")).unwrap();
+        let depth = last.lines().filter_map(|line| line.strip_prefix("v ")?.split(' ').nth(2)?.parse().ok());
+        depth.fold(f64::MAX, |lowest: f64, z: f64| lowest.min(z))
+    };
+    let laid = scene.replace("[[held]]", "rest = \"as-laid-out\"\n[[held]]");
+    for bending in ["sheet", "hinges"] {
+        assert!(highest(scene, bending) > -1e-6, "{bending}");
+        assert!(highest(&laid, bending) < -0.999, "{bending}");
+    }
+    let grid =
+        OVERHANG.replace("\"bend-THIRD\"", "\"shear\"").replace("[sheet]", "[sheet]\nrest = \"as-laid-out\"");
+    refused(&grid, CRISP, &["--rest"], "scene.toml:6 ", "flat");
+}
+
+#[test]
+fn a_sheet_is_not_moved_by_runge_kutta() {
+    let scene = OVERHANG.replace("THIRD", "twist") + "[solver]\nintegrator = \"runge-kutta\"\n";
+    let more = ["--bending", "sheet", "--duration", "0.1"];
+    refused(&scene, CRISP, &more, "scene.toml:", "implicit-euler, as edges");
+}
+
+#[test]
+fn a_sheet_bends_by_the_components_of_its_scene() {
+    let all = depth(&OVERHANG.replace("THIRD", "twist"), CRISP, &["--bending", "sheet"]).0;
+    let without = OVERHANG.replace(", \"bend-THIRD\"", "");
+    assert!((depth(&without, CRISP, &["--bending", "sheet"]).0 / all - 1.0).abs() > 1e-9);
+}

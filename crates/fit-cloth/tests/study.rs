@@ -17,7 +17,7 @@ use fit_cloth::text;
 fn smallest() -> Extent {
     Extent {
         topics: Topic::ALL.to_vec(),
-        models: vec![Model::Stvk],
+        models: vec![Model::STVK],
         meshes: vec![13, 25],
         finest: 49,
         tolerances_on: 13,

@@ -85,7 +85,7 @@ fn cloth_on_the_bias(folder: &Path, name: &str, size: [f64; 2]) -> PathBuf {
     let stiffnesses =
         [(Component::StretchWeft, 2e4), (Component::StretchWarp, 2e4), (Component::Shear, 40.0)];
     let curve = |(component, stiffness)| {
-        let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+        let negative = Model::STVK.negative_strain(component, Compression::ZeroStrain);
         (component, StiffnessCurve::constant(stiffness, negative).unwrap())
     };
     let curves = stiffnesses.into_iter().map(curve).collect();

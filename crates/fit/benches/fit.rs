@@ -16,7 +16,7 @@ use cloth_fit::twin::replica::Replica;
 use cloth_sim::cloth::{Cloth, ForceScale};
 use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{self, Solver, Tolerance};
-use cloth_sim::material::{Component, Curves};
+use cloth_sim::material::{Component, Curves, Model};
 use std::time::Instant;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
@@ -169,7 +169,7 @@ fn factor_seconds(
 /// Time of one gradient and one Hessian, s.
 fn assembly_seconds(cloth: &Cloth, curves: &Curves, x: &[f64]) -> f64 {
     let (mut gradient, mut values) = (vec![0.0; x.len()], Vec::new());
-    let mut scale = ForceScale::new(cloth.nodes());
+    let mut scale = ForceScale::new(cloth.points());
     fastest(|| {
         cloth.gradient(curves, x, &mut gradient, &mut scale);
         cloth.hessian(curves, x, HessianKind::Full, &mut values);
@@ -236,7 +236,7 @@ fn jacobian(set: &MeasurementSet, settings: &Settings, report: &FitReport) -> Re
 /// Prints the distance of the published method's curves from ours, in half-widths of our bands.
 fn compare(ours: &FitReport, theirs: &FitReport) {
     println!("{:<14}{:>24}{:>22}", "curve", "largest difference", "in half bands");
-    for component in Component::ALL {
+    for component in Model::STVK.components() {
         let (Some(stage), Some(other)) = (ours.stage(component), theirs.curves().get(component)) else {
             continue;
         };

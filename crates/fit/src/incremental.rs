@@ -91,7 +91,7 @@ impl FailedStage {
 impl FitReport {
     /// Components that no sequence shows, or not well enough.
     pub fn missing(&self) -> Vec<Component> {
-        Component::ALL.into_iter().filter(|&component| !self.knowledge.knows(component)).collect()
+        self.model.components().into_iter().filter(|&component| !self.knowledge.knows(component)).collect()
     }
 
     /// The last stage over a component; `None` if no sequence shows it.

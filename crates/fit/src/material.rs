@@ -1,5 +1,6 @@
 //! A material to simulate: from a fit, from a known fabric, or written by hand.
 
+pub mod bending;
 pub mod check;
 pub mod file;
 mod hand_written;
@@ -65,7 +66,8 @@ impl Material {
         }
         let written = file.value::<HandWritten>()?;
         let curves = written.curves(path, &file)?;
-        let HandWritten { name, areal_density_kg_m2: areal_density, model, compression, .. } = written;
+        let model = written.model();
+        let HandWritten { name, areal_density_kg_m2: areal_density, compression, .. } = written;
         Ok(Self { name, areal_density, model, compression, curves, for_mesh: None })
     }
 
@@ -111,7 +113,7 @@ mod tests {
                       [curves.bend-weft]\nrigidity_n_m = 3e-5\n\
                       [curves.bend-warp]\ncurvature_per_m = [0.0, 20.0]\nrigidity_n_m = [3e-5, 1.5e-5]\n";
         let cloth = read(&format!("{HEAD}{curves}")).unwrap();
-        assert_eq!((cloth.model, cloth.compression), (Model::Stvk, Compression::ZeroStrain));
+        assert_eq!((cloth.model, cloth.compression), (Model::STVK, Compression::ZeroStrain));
         let of = |component| cloth.curves.get(component);
         assert_eq!(of(Component::StretchWeft).unwrap().stiffnesses(), [800.0]);
         // The hinges' strain is three times the curvature, their stiffness a third of the rigidity.

@@ -74,6 +74,7 @@ pub fn simulation_json(scene: &Scene, material: &Material, simulation: &Simulati
     put("model", json!(material.model));
     put("compression", json!(material.compression));
     put("components", json!(simulation.components));
+    put("rest_shape", json!(scene.rest));
     put("vertices", json!(scene.mesh.len()));
     put("triangles", json!(scene.mesh.triangles.len()));
     put("frames", json!(simulation.frames.len()));

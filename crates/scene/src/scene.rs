@@ -18,7 +18,7 @@ use array::vector;
 use cloth_data::error::{Error, Result};
 use cloth_data::io::TomlFile;
 use cloth_fit::material::Material;
-use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::cloth::{Cloth, Problem, Rest};
 use cloth_sim::dynamics;
 use cloth_sim::error::Error as Defect;
 use cloth_sim::load::{Guided, Held};
@@ -37,6 +37,8 @@ pub struct Scene {
     pub origin: Vector3<f64>,
     /// The sheet at rest, in its initial position.
     pub mesh: Mesh,
+    /// Its shape without bending moments.
+    pub rest: Rest,
     /// Gravity, m/s².
     pub gravity: Vector3<f64>,
     /// Components that store energy; `None` for all that the material has.
@@ -96,6 +98,7 @@ impl Scene {
             name: scene.name,
             origin,
             mesh,
+            rest: scene.sheet.rest,
             gravity,
             components: scene.components,
             held,
@@ -144,6 +147,7 @@ impl Scene {
             tied: &[],
             guided: &self.guided,
             planar: false,
+            rest: self.rest,
         };
         let cloth = if at_rest { Cloth::new(&problem) } else { Cloth::in_motion(&problem) };
         cloth.map_err(|defect| self.explain(defect))
@@ -158,6 +162,9 @@ impl Scene {
             }
             Defect::NeedsGrid { .. } => {
                 self.file.invalid("sheet", defect.to_string(), "grid, or another model")
+            }
+            Defect::InvalidValue { field: "runge_kutta", expected, .. } => {
+                self.file.invalid("solver.integrator", "runge-kutta", *expected)
             }
             Defect::UnstableStep { limit, .. } => {
                 let expected = format!("at most {limit:.3e} s, or integrator = \"implicit-euler\"");

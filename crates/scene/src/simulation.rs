@@ -99,15 +99,16 @@ pub fn to_rest(scene: &Scene, material: &Material, watch: &mut dyn FnMut(usize))
     let clock = Instant::now();
     let components = scene.components(material)?;
     let cloth = scene.cloth(material, &components, true)?;
-    let mut x = scene.start.clone();
+    let curves = material.curves.only(&components);
+    let mut x = cloth.state(&scene.start);
     let settings = descent::Settings::default();
-    let descent = descend(&cloth, &material.curves, &mut x, &settings, &mut |step, _| watch(step))
+    let descent = descend(&cloth, &curves, &mut x, &settings, &mut |step, _| watch(step))
         .map_err(|defect| scene.explain(defect))?;
-    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.nodes()));
-    cloth.gradient(&material.curves, &x, &mut gradient, &mut scale);
+    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.points()));
+    cloth.gradient(&curves, &x, &mut gradient, &mut scale);
     let frames = vec![
         Frame { time: Some(0.0), positions: points(&scene.start) },
-        Frame { time: None, positions: points(&x) },
+        Frame { time: None, positions: points(&x[..scene.start.len()]) },
     ];
     let holds = cloth.clip_forces(&gradient);
     measured(
@@ -142,7 +143,8 @@ pub fn in_motion(
     let clock = Instant::now();
     let components = scene.components(material)?;
     let cloth: Cloth = scene.cloth(material, &components, false)?;
-    let mut motion = Motion::new(&cloth, &material.curves, scene.start.clone(), &scene.dynamics)
+    let curves = material.curves.only(&components);
+    let mut motion = Motion::new(&cloth, &curves, cloth.state(&scene.start), &scene.dynamics)
         .map_err(|defect| scene.explain(defect))?;
     let step = scene.dynamics.step;
     let steps = (duration / step).round().max(1.0) as usize;
@@ -160,14 +162,20 @@ pub fn in_motion(
         not_converged += usize::from(step.status == dynamics::Status::NotConverged);
         rows.push(Row { time: motion.time(), energies: motion.energies(), step: Some(step) });
         if number % every == 0 || number == steps {
-            frames.push(Frame { time: Some(motion.time()), positions: points(motion.positions()) });
+            frames.push(Frame {
+                time: Some(motion.time()),
+                positions: points(&motion.positions()[..scene.start.len()]),
+            });
         }
         watch(number, steps);
     }
     let taken = rows.len() - 1;
     // Always keep the last good state.
     if stopped.is_some() && frames.last().is_some_and(|frame| frame.time != Some(motion.time())) {
-        frames.push(Frame { time: Some(motion.time()), positions: points(motion.positions()) });
+        frames.push(Frame {
+            time: Some(motion.time()),
+            positions: points(&motion.positions()[..scene.start.len()]),
+        });
     }
     measured(
         scene,

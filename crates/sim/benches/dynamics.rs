@@ -16,8 +16,8 @@ use std::time::Instant;
 const STEPS: usize = 20;
 
 fn hung(nodes: usize) -> Result<Sample> {
-    let curves = samples::fabric(Model::Stvk, [500.0, 50.0, 1e-6])?;
-    let mut sample = Sample::at_rest(samples::square(nodes, Diagonals::Alternating)?, Model::Stvk, curves);
+    let curves = samples::fabric(Model::STVK, [500.0, 50.0, 1e-6])?;
+    let mut sample = Sample::at_rest(samples::square(nodes, Diagonals::Alternating)?, Model::STVK, curves);
     sample.gravity = Vector3::new(0.0, 0.0, -GRAVITY);
     sample.hold(|p| (p.y > 0.999 * SIDE && (p.x == 0.0 || p.x > 0.999 * SIDE)).then_some(0));
     sample.perturb(1e-6);

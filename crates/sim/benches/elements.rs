@@ -5,7 +5,7 @@
 //! 10 000 elements. `tests/operations.sh` counts the arithmetic of the compiled functions `…_force` and `…_jacobian`.
 #![allow(clippy::print_stdout)]
 
-use cloth_sim::bending::Hinge;
+use cloth_sim::bending::{Hinge, Sheet, SheetTriangle};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
 use cloth_sim::element::{Block, Element, Point, complete};
 use cloth_sim::error::Result;
@@ -57,7 +57,7 @@ fn jacobian<const K: usize, const S: usize, E: Element<K, 3, S>>(
         }
     }
     element.add_geometric(x, stress, blocks);
-    complete(blocks);
+    complete(blocks, E::TRANSLATED);
     strains
 }
 
@@ -89,6 +89,7 @@ counted!(spring_force, spring_jacobian, Spring, 2, 1);
 counted!(soft_constraint_force, soft_constraint_jacobian, SoftTriangle, 3, 3);
 counted!(stvk_force, stvk_jacobian, StvkTriangle, 3, 3);
 counted!(hinge_force, hinge_jacobian, Hinge, 4, 1);
+counted!(sheet_force, sheet_jacobian, SheetTriangle, 7, 4);
 
 /// Nanoseconds per call, the fastest of several runs.
 fn nanoseconds(mut call: impl FnMut(usize)) -> f64 {
@@ -115,8 +116,10 @@ fn states<const K: usize>(rest: [Point<3>; K]) -> Vec<[Point<3>; K]> {
 macro_rules! row {
     ($name:literal, $force:ident, $jacobian:ident, $element:expr, $mesh:expr, $nodes:literal, $strains:literal) => {
         let element = $element;
-        let nodes = Element::<$nodes, 3, $strains>::nodes(&element);
-        let states = states(nodes.map(|node| $mesh.positions[node]));
+        let coordinates = Element::<$nodes, 3, $strains>::coordinates(&element);
+        // A rotation has no place at rest.
+        let place = |own: [usize; 3]| $mesh.positions.get(own[0] / 3).copied().unwrap_or_default();
+        let states = states(coordinates.map(place));
         let (stress, tangent) = (black_box([3.0; $strains]), black_box([300.0; $strains]));
         let force = nanoseconds(|i| {
             black_box($force(&element, &states[i], &stress));
@@ -155,6 +158,9 @@ fn main() -> Result<()> {
     );
     row!("StVK", stvk_force, stvk_jacobian, StvkTriangle(triangle), mesh, 3, 3);
     row!("hinge", hinge_force, hinge_jacobian, Hinge::all(&mesh)?[7], mesh, 4, 1);
+    let mesh = samples::square(5, Diagonals::Forward)?;
+    let triangle = Sheet::new(&mesh, &vec![false; mesh.len()], true)?.triangles[12];
+    row!("sheet", sheet_force, sheet_jacobian, triangle, mesh, 7, 4);
     println!("\n{:<18}{:>10}", "curve, ns", "stress");
     for points in [1, 5, 201] {
         let strains: Vec<f64> = (0..points).map(|i| 0.1 * i as f64 / (points - 1).max(1) as f64).collect();

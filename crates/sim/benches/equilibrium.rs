@@ -22,7 +22,7 @@ fn main() -> Result<()> {
     );
     for nodes in [25, 51, 101] {
         parts("stretch, planar", nodes, &stretch_test(nodes, 0.03)?)?;
-        parts("all, 3-D", nodes, &samples::picture_frame(Model::Stvk, nodes, 0.2)?)?;
+        parts("all, 3-D", nodes, &samples::picture_frame(Model::STVK, nodes, 0.2)?)?;
     }
     println!(
         "\n{:<18}{:>10}{:>12}{:>16}{:>8}{:>10}",
@@ -33,11 +33,11 @@ fn main() -> Result<()> {
     equilibria("stretch", &stretch?, Component::StretchWeft)?;
     let cantilever: Result<Vec<_>> = [0.03, 0.1, 0.2]
         .into_iter()
-        .map(|areal_density| Ok(Sample { areal_density, ..samples::cantilever(Model::Stvk, 25, 500.0)? }))
+        .map(|areal_density| Ok(Sample { areal_density, ..samples::cantilever(Model::STVK, 25, 500.0)? }))
         .collect();
     equilibria("cantilever", &cantilever?, Component::BendWeft)?;
     let shear: Result<Vec<_>> =
-        [0.05, 0.1, 0.2].into_iter().map(|angle| samples::picture_frame(Model::Stvk, 25, angle)).collect();
+        [0.05, 0.1, 0.2].into_iter().map(|angle| samples::picture_frame(Model::STVK, 25, angle)).collect();
     equilibria("picture frame", &shear?, Component::Shear)
 }
 
@@ -45,11 +45,11 @@ fn main() -> Result<()> {
 fn stretch_test(nodes: usize, pull: f64) -> Result<Sample> {
     let mesh = samples::square(nodes, Diagonals::Alternating)?;
     let curve = |component| {
-        let negative = Model::Stvk.negative_strain(component, Default::default());
+        let negative = Model::STVK.negative_strain(component, Default::default());
         Ok((component, StiffnessCurve::new(vec![0.0, 0.03, 0.08], vec![200.0, 400.0, 600.0], negative)?))
     };
     let curves = [Component::StretchWeft, Component::StretchWarp].into_iter().map(curve);
-    let mut sample = Sample::at_rest(mesh, Model::Stvk, curves.collect::<Result<Curves>>()?);
+    let mut sample = Sample::at_rest(mesh, Model::STVK, curves.collect::<Result<Curves>>()?);
     sample.planar = true;
     sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.999 * SIDE).then_some(1) });
     sample.place(|p| {
@@ -84,7 +84,7 @@ fn parts(name: &str, nodes: usize, sample: &Sample) -> Result<()> {
     let found = solver.solve(&sample.curves, &mut x, &Settings::default());
     assert!(found.converged(), "{name}: {}", found.status);
     let mut gradient = vec![0.0; x.len()];
-    let mut scale = ForceScale::new(cloth.nodes());
+    let mut scale = ForceScale::new(cloth.points());
     let mut values = Vec::new();
     let gradient_time = time(|| {
         cloth.gradient(&sample.curves, &x, &mut gradient, &mut scale);

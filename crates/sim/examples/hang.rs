@@ -13,10 +13,10 @@ use cloth_sim::samples::{GRAVITY, fabric};
 fn main() -> Result<()> {
     let grid = Grid { columns: 21, rows: 21, width: 0.3, height: 0.3, diagonals: Diagonals::Alternating };
     let mesh = grid.mesh()?;
-    let curves = fabric(Model::Stvk, [300.0, 30.0, 1e-5])?;
+    let curves = fabric(Model::STVK, [300.0, 30.0, 1e-5])?;
     let held = [0, 20].map(|column| Held { node: grid.node(column, 20), clip: None });
     let (areal_density, gravity) = (0.2, Vector3::new(0.0, -GRAVITY, 0.0));
-    let sheet = Problem::new(&mesh, Model::Stvk, &Component::ALL);
+    let sheet = Problem::new(&mesh, Model::STVK, &Component::ALL);
     let cloth = Cloth::new(&Problem { areal_density, gravity, held: &held, ..sheet })?;
     let mut x = mesh.coordinates();
     let found = Solver::new(&cloth).solve(&curves, &mut x, &Settings::default());

@@ -8,13 +8,13 @@ mod guide;
 mod numbering;
 mod problem;
 
-pub use problem::Problem;
+pub use problem::{Problem, Rest};
 
 use crate::bending::Bending;
 use crate::curve::NegativeStrain;
 use crate::element::{
-    Element, EnergyPass, GradientPass, HessianKind, HessianPass, ParameterPass, Pass, PredictedStrainPass,
-    StiffnessPass, StrainPass, gather,
+    EnergyPass, GradientPass, HessianKind, HessianPass, ParameterPass, Pass, PredictedStrainPass,
+    StiffnessPass, StrainPass, gather, stacked,
 };
 use crate::error::{Error, Result};
 use crate::linear::matrix::Pattern;
@@ -35,11 +35,13 @@ use std::collections::BTreeSet;
 pub struct Cloth {
     membrane: Membrane,
     bending: Option<Bending>,
-    /// Mass of every node, kg.
+    /// Mass of every point, kg; rotations have none.
     masses: Vec<f64>,
     /// Gravity, m/s².
     gravity: Vector3<f64>,
     nodes: usize,
+    /// Rotations of edges, which follow the nodes' coordinates in a state.
+    rotations: usize,
     clips: usize,
     clip_of: Vec<Option<usize>>,
     planar: bool,
@@ -59,6 +61,8 @@ pub struct Cloth {
     targets: [Vec<u32>; 2],
     /// Positions of the diagonal among the entries.
     diagonal: Vec<usize>,
+    /// True if entries of an element beside its diagonal fall on the matrix's: points that are tied, or one node twice.
+    doubles: bool,
 }
 
 impl Cloth {
@@ -79,29 +83,45 @@ impl Cloth {
     pub fn in_motion(problem: &Problem<'_>) -> Result<Self> {
         let Problem { mesh, model, components, planar, .. } = *problem;
         check(problem)?;
-        let mut membrane = Membrane::new(model, mesh, components)?;
-        let mut bending = Bending::new(model, mesh, components)?;
-        let mean_edge = mean_edge(mesh)?;
-        let leader = leaders(mesh.len(), problem.tied);
-        let alike = Alike::new(mesh, &leader, mean_edge);
-        let twins =
-            if problem.tied.is_empty() { Vec::new() } else { alike.merge(&mut membrane, &mut bending) };
         let mut held = vec![false; mesh.len()];
         let mut clip_of = vec![None; mesh.len()];
         for &Held { node, clip } in problem.held {
             held[node] = true;
             clip_of[node] = clip;
         }
-        let mut graph = GraphPass { neighbours: vec![BTreeSet::new(); mesh.len()] };
+        let mut membrane = Membrane::new(model, mesh, components)?;
+        // As a cylinder, if every node is on a line that moves as a whole.
+        let rolls = problem.tied.iter().map(Vec::len).sum::<usize>() == mesh.len();
+        let mut bending = Bending::new(model, mesh, components, &held, rolls)?;
+        if let (Some(bending), Rest::Flat) = (&mut bending, problem.rest) {
+            bending.flatten();
+        }
+        let mut places = mesh.positions.clone();
+        let rotating = bending.as_ref().map_or(&[][..], |bending| bending.rotating());
+        let rotations = rotating.len();
+        // Of three rotations the mean of their edges.
+        places.extend(rotating.chunks(3).map(|own| own.iter().sum::<Vector3<f64>>() / own.len() as f64));
+        let points = places.len();
+        let mean_edge = mean_edge(mesh)?;
+        let leader = leaders(points, problem.tied);
+        let alike = Alike::new(mesh, &leader, mean_edge);
+        let twins =
+            if problem.tied.is_empty() { Vec::new() } else { alike.merge(&mut membrane, &mut bending) };
+        held.resize(points, false);
+        clip_of.resize(points, None);
+        let mut graph = GraphPass { neighbours: vec![BTreeSet::new(); points], used: BTreeSet::new() };
         visit(&membrane, bending.as_ref(), planar, &mut graph);
+        let used = std::mem::take(&mut graph.used);
         let neighbours = graph.led(&leader);
-        let moves: Vec<bool> = (0..mesh.len()).map(|node| !held[node] && leader[node] == node).collect();
+        let moves: Vec<bool> = (0..points).map(|point| !held[point] && leader[point] == point).collect();
         let dimensions = if planar { 2 } else { 3 };
-        let unknowns = number(&moves, &neighbours, &mesh.positions, dimensions);
-        let mut unknown_of = vec![HELD; 3 * mesh.len()];
+        let mut unknowns = number(&moves, &neighbours, &places, dimensions);
+        // A node without elements is an unknown, too; a rotation without is none.
+        unknowns.retain(|coordinate| *coordinate < 3 * mesh.len() || used.contains(coordinate));
+        let mut unknown_of = vec![HELD; 3 * points];
         unknowns.iter().enumerate().for_each(|(unknown, &coordinate)| unknown_of[coordinate] = unknown);
         let columns = columns(&unknowns, &unknown_of, &neighbours);
-        for node in (0..mesh.len()).filter(|&node| leader[node] != node) {
+        for node in (0..points).filter(|&node| leader[node] != node) {
             (0..3).for_each(|i| unknown_of[3 * node + i] = unknown_of[3 * leader[node] + i]);
         }
         let coordinates = unknown_of.iter().copied().enumerate();
@@ -124,12 +144,17 @@ impl Cloth {
         };
         visit(&membrane, bending.as_ref(), planar, &mut scatter);
         let targets = scatter.targets;
+        let nowhere = pattern.entries() + 3 * clips * pattern.size();
+        let doubles = targets.iter().flatten().any(|&target| target as usize > nowhere);
+        let mut masses = lumped_masses(mesh, problem.areal_density);
+        masses.resize(points, 0.0);
         Ok(Self {
             membrane,
             bending,
-            masses: lumped_masses(mesh, problem.areal_density),
+            masses,
             gravity: problem.gravity,
             nodes: mesh.len(),
+            rotations,
             clips,
             clip_of,
             planar,
@@ -142,12 +167,27 @@ impl Cloth {
             guides,
             targets,
             diagonal,
+            doubles,
         })
     }
 
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.nodes
+    }
+
+    /// Number of points: nodes, and one for every three rotations of edges. A state has three coordinates of each.
+    pub fn points(&self) -> usize {
+        self.nodes + self.rotations.div_ceil(3)
+    }
+
+    /// A state of given nodes, with every edge's normal between those of its triangles.
+    ///
+    /// * `nodes` — 3 stacked coordinates per node, m
+    pub fn state(&self, nodes: &[f64]) -> Vec<f64> {
+        let mut state = nodes.to_vec();
+        state.resize(3 * self.points(), 0.0);
+        state
     }
 
     /// Number of unknowns.
@@ -206,7 +246,7 @@ impl Cloth {
 
     /// Total energy, J: elastic energy plus that of the weight.
     ///
-    /// * `x` — 3 stacked coordinates per node, m
+    /// * `x` — 3 stacked coordinates per point, m: nodes, then of every rotating edge its angle times its length
     pub fn energy(&self, curves: &Curves, x: &[f64]) -> f64 {
         self.elastic_energy(curves, x) + self.weight_energy(x)
     }
@@ -244,7 +284,7 @@ impl Cloth {
     /// ignore.
     pub fn hessian(&self, curves: &Curves, x: &[f64], kind: HessianKind<'_>, values: &mut Vec<f64>) {
         let len = self.entries() + self.border_len() + 1;
-        let twice = if self.is_tied() { self.entries() } else { 0 };
+        let twice = if self.doubles { self.entries() } else { 0 };
         values.clear();
         values.resize(len + twice, 0.0);
         let targets = [&self.targets[0][..], &self.targets[1][..]];
@@ -280,7 +320,7 @@ impl Cloth {
     ) {
         let points = curves.get(component).map_or(0, |curve| curve.len());
         columns.clear();
-        columns.resize(points * 3 * self.nodes, 0.0);
+        columns.resize(points * 3 * self.points(), 0.0);
         let mut derivative = vec![0.0; points];
         self.visit(&mut ParameterPass {
             law: curves,
@@ -337,21 +377,15 @@ impl Cloth {
         self.visit(&mut PredictedStrainPass { x, step, strains });
     }
 
-    /// True if a hinge angle changes by more than half a turn between two states, that is, jumps across ±π.
+    /// True if an angle across an edge changes by more than half a turn between two states, that is, jumps across ±π.
     pub(crate) fn hinge_jumps(&self, x: &[f64], to: &[f64]) -> bool {
-        let Some(Bending::DiscreteShells(hinges)) = &self.bending else { return false };
-        hinges.iter().any(|hinge| {
-            let angle = |x: &[f64]| {
-                hinge.strains(&gather::<4, 3>(hinge.nodes, x))[0] * hinge.width + hinge.rest_angle
-            };
-            (angle(to) - angle(x)).abs() > std::f64::consts::PI
-        })
+        self.bending.as_ref().is_some_and(|bending| bending.jumps(x, to))
     }
 
     /// True if a triangle flips between two states of a planar problem (3 stacked coordinates per node).
     pub fn turns_over(&self, x: &[f64], to: &[f64]) -> bool {
         let faces_up = |x: &[f64], nodes: [usize; 3]| {
-            let [a, b, c] = gather::<3, 2>(nodes, x);
+            let [a, b, c] = gather::<3, 2>(stacked(nodes), x);
             (b - a).perp(&(c - a)) > 0.0
         };
         self.planar && self.triangles.iter().any(|&nodes| faces_up(x, nodes) != faces_up(to, nodes))
@@ -363,10 +397,6 @@ impl Cloth {
 
     pub(crate) fn diagonal(&self) -> &[usize] {
         &self.diagonal
-    }
-
-    pub(crate) fn is_planar(&self) -> bool {
-        self.planar
     }
 
     /// The clip that holds a node, if any.
@@ -452,7 +482,7 @@ impl Cloth {
 
     /// Lumped mass of every node, kg.
     pub fn masses(&self) -> &[f64] {
-        &self.masses
+        &self.masses[..self.nodes]
     }
 
     /// Triangles of the rest mesh.

@@ -92,7 +92,7 @@ pub fn descend(
             return Err(Error::InvalidValue { field, value, expected });
         }
     }
-    let mut solver = Solver::new(cloth);
+    let (mut solver, nodes) = (Solver::new(cloth), cloth.nodes());
     let (mut length, mut near) = (settings.step, NEAR * cloth.mean_edge());
     let (mut steps, mut strongest) = (0, 0.0f64);
     let mut remedies = Remedies::default();
@@ -108,7 +108,7 @@ pub fn descend(
                 length *= 0.5;
                 continue;
             }
-            let way = greatest_way(x, motion.positions());
+            let way = greatest_way(nodes, x, motion.positions());
             // Driving acceleration, m/s².
             let pull = way / (length * length);
             strongest = strongest.max(pull);
@@ -126,7 +126,7 @@ pub fn descend(
         let before = x.to_vec();
         let equilibrium = solver.solve(curves, x, &settings.equilibrium);
         remedies += equilibrium.remedies;
-        let last_way = greatest_way(&before, x);
+        let last_way = greatest_way(nodes, &before, x);
         if equilibrium.converged() || steps >= settings.max_steps || length <= SHORTEST * settings.step {
             return Ok(Descent { equilibrium, steps, last_way, remedies });
         }
@@ -143,10 +143,11 @@ fn still(step: f64) -> dynamics::Settings {
     dynamics::Settings { step, integrator, ..dynamics::Settings::default() }
 }
 
-fn greatest_way(from: &[f64], to: &[f64]) -> f64 {
+fn greatest_way(nodes: usize, from: &[f64], to: &[f64]) -> f64 {
     let squares = from
         .chunks_exact(3)
         .zip(to.chunks_exact(3))
+        .take(nodes)
         .map(|(from, to)| from.iter().zip(to).map(|(from, to)| (to - from).powi(2)).sum::<f64>());
     squares.fold(0.0, f64::max).sqrt()
 }

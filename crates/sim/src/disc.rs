@@ -110,7 +110,7 @@ fn band(ring: usize) -> Vec<[usize; 3]> {
 mod tests {
     use super::*;
     use crate::bending::Hinge;
-    use crate::element::{Element, gather};
+    use crate::element::{Element, gather, stacked};
     use crate::samples::rolled;
     use crate::strain_measure::HINGE_STRAIN_PER_CURVATURE;
 
@@ -157,7 +157,7 @@ mod tests {
             let [a, b] = [0, 1].map(|end| mesh.material[hinge.nodes[end]].norm());
             // Half of an edge on the circle belongs to it.
             let share = [a, b].map(|r| if (r - within).abs() < 1e-9 { 0.5 } else { f64::from(r < within) });
-            let [strain] = hinge.strains(&gather(hinge.nodes, &x));
+            let [strain] = hinge.strains(&gather(stacked(hinge.nodes), &x));
             share[0].min(share[1]) * 0.5 * strain * strain * Element::<4, 3, 1>::area(hinge)
         };
         let hinges = Hinge::all(mesh).unwrap();

@@ -64,11 +64,11 @@ pub struct Motion<'a> {
 impl<'a> Motion<'a> {
     /// Starts from rest at a state.
     ///
-    /// * `positions` — 3 per node, m; held nodes at their fixed positions
+    /// * `positions` — a state ([`Cloth::state`]), m; held nodes at their fixed positions
     ///
     /// # Errors
     /// A setting or a position that is not finite or out of range; cloth without mass; a Runge–Kutta step beyond
-    /// [`stable_step`], which the error reports.
+    /// [`stable_step`], which the error reports; Runge–Kutta for a sheet whose edges rotate.
     pub fn new(
         cloth: &'a Cloth,
         curves: &'a Curves,
@@ -81,7 +81,7 @@ impl<'a> Motion<'a> {
 
     /// Starts with velocities.
     ///
-    /// * `velocities` — 3 per node, m/s; ignored for held nodes, and across the free directions of guided ones
+    /// * `velocities` — 3 per point, m/s; ignored for held nodes, and across the free directions of guided ones
     ///
     /// # Errors
     /// Those of [`Motion::new`].
@@ -94,8 +94,8 @@ impl<'a> Motion<'a> {
     ) -> Result<Self> {
         settings.check()?;
         for (what, values) in [("positions", &positions), ("velocities", &velocities)] {
-            if values.len() != 3 * cloth.nodes() {
-                return Err(Error::ShapeMismatch { what, expected: 3 * cloth.nodes(), found: values.len() });
+            if values.len() != 3 * cloth.points() {
+                return Err(Error::ShapeMismatch { what, expected: 3 * cloth.points(), found: values.len() });
             }
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 return Err(Error::NotFinite { what, vertex: index / 3 });
@@ -116,6 +116,10 @@ impl<'a> Motion<'a> {
         let method = match settings.integrator {
             Integrator::ImplicitEuler { newton, linear } => {
                 Method::Implicit(Box::new(ImplicitEuler::new(cloth, newton, linear)))
+            }
+            Integrator::RungeKutta if cloth.points() > cloth.nodes() => {
+                let expected = "implicit-euler, as edges of a sheet rotate without mass";
+                return Err(Error::InvalidValue { field: "runge_kutta", value: settings.step, expected });
             }
             Integrator::RungeKutta => {
                 let limit = stable_step(cloth, curves, &state.positions, &settings.damping);
@@ -174,12 +178,12 @@ impl<'a> Motion<'a> {
         step
     }
 
-    /// Positions of the nodes, 3 per node, m.
+    /// The state: positions of the nodes, 3 per node, m, and rotations.
     pub fn positions(&self) -> &[f64] {
         &self.state.positions
     }
 
-    /// Velocities of the nodes, 3 per node, m/s.
+    /// Velocities of the state, 3 per point, m/s.
     pub fn velocities(&self) -> &[f64] {
         &self.state.velocities
     }
@@ -196,7 +200,12 @@ impl<'a> Motion<'a> {
 
     /// Greatest speed of a node, m/s.
     pub fn greatest_speed(&self) -> f64 {
-        let squares = self.state.velocities.chunks_exact(3).map(|v| v.iter().map(|c| c * c).sum::<f64>());
+        let squares = self
+            .state
+            .velocities
+            .chunks_exact(3)
+            .take(self.cloth.nodes())
+            .map(|v| v.iter().map(|c| c * c).sum::<f64>());
         squares.fold(0.0, f64::max).sqrt()
     }
 

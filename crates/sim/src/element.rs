@@ -24,10 +24,14 @@ pub type Point<const N: usize> = SVector<f64, N>;
 /// A block of a Hessian between two nodes.
 pub type Block<const N: usize> = SMatrix<f64, N, N>;
 
-/// `S` strains over `K` nodes with `N` coordinates each: springs (2 nodes, 1 strain), triangles (3, 3), hinges (4, 1).
+/// `S` strains over `K` points with `N` coordinates each: springs (2 points, 1 strain), triangles (3, 3), hinges (4, 1),
+/// a sheet's triangles (7, 4).
 pub trait Element<const K: usize, const N: usize, const S: usize> {
-    /// Node indices.
-    fn nodes(&self) -> [usize; K];
+    /// Points that a displacement of the whole cloth moves, the first ones; the others are rotations.
+    const TRANSLATED: usize = K;
+
+    /// Indices of the points' coordinates among all stacked ones: of a node, 3 in a row.
+    fn coordinates(&self) -> [[usize; 3]; K];
 
     /// The component of each strain.
     fn components(&self) -> [Component; S];
@@ -41,7 +45,7 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
     /// The strains (bending: 1/m).
     fn strains(&self, x: &[Point<N>; K]) -> [f64; S];
 
-    /// Derivatives of the strains with respect to every node, 1/m.
+    /// Derivatives of the strains with respect to every point, 1/m.
     fn gradients(&self, x: &[Point<N>; K]) -> [[Point<N>; K]; S];
 
     /// Strains and gradients together, for elements where they share work.
@@ -57,28 +61,34 @@ pub trait Element<const K: usize, const N: usize, const S: usize> {
     fn add_clamped(&self, x: &[Point<N>; K], stress: &[f64; S], blocks: &mut [[Block<N>; K]; K]);
 }
 
-/// Coordinates of the nodes, from three stacked coordinates per node.
+/// Indices of the coordinates of nodes, of which each has three in a row.
 #[inline(always)]
-pub fn gather<const K: usize, const N: usize>(nodes: [usize; K], x: &[f64]) -> [Point<N>; K] {
-    let mut points = [Point::<N>::zeros(); K];
-    for (point, node) in points.iter_mut().zip(nodes) {
-        point.copy_from_slice(&x[3 * node..3 * node + N]);
-    }
-    points
+pub fn stacked<const K: usize>(nodes: [usize; K]) -> [[usize; 3]; K] {
+    nodes.map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
 }
 
-/// Fills in the blocks of node 0. Moving all nodes alike changes no strain, so every row of blocks of an element's
-/// Hessian sums to zero. Saves a third of a hinge's work.
+/// Points from all stacked coordinates.
 #[inline(always)]
-pub fn complete<const K: usize, const N: usize>(blocks: &mut [[Block<N>; K]; K]) {
+pub fn gather<const K: usize, const N: usize>(coordinates: [[usize; 3]; K], x: &[f64]) -> [Point<N>; K] {
+    coordinates.map(|own| Point::from_fn(|i, _| x[own[i]]))
+}
+
+/// Fills in the blocks of point 0. Moving all nodes alike changes no strain, so every row of blocks of an element's
+/// Hessian sums to zero over them. Saves a third of a hinge's work.
+///
+/// * `translated` — [`Element::TRANSLATED`]
+#[inline(always)]
+pub fn complete<const K: usize, const N: usize>(blocks: &mut [[Block<N>; K]; K], translated: usize) {
     let mut corner = Block::zeros();
     for a in 1..K {
         let mut sum = Block::zeros();
-        for b in 1..K {
+        for b in 1..translated {
             sum -= if b <= a { blocks[a][b] } else { blocks[b][a].transpose() };
         }
         blocks[a][0] = sum;
-        corner -= sum;
+        if a < translated {
+            corner -= sum;
+        }
     }
     blocks[0][0] = corner;
 }
@@ -127,7 +137,7 @@ impl<L: Law> Pass for EnergyPass<'_, L> {
     ) {
         for (index, element) in elements.iter().enumerate() {
             let site = Site { part, element: index, components: element.components() };
-            let strains = element.strains(&gather(element.nodes(), self.x));
+            let strains = element.strains(&gather(element.coordinates(), self.x));
             self.energy += element.area() * self.law.energy(&site, &strains);
         }
     }
@@ -152,9 +162,10 @@ impl<L: Law> Pass for GradientPass<'_, L> {
         elements: &[E],
     ) {
         for (index, element) in elements.iter().enumerate() {
-            let (nodes, components, area) = (element.nodes(), element.components(), element.area());
+            let (coordinates, components, area) =
+                (element.coordinates(), element.components(), element.area());
             let site = Site { part, element: index, components };
-            let x = gather(nodes, self.x);
+            let x = gather(coordinates, self.x);
             let (strains, gradients) = element.evaluate(&x);
             let Stresses { stress, tangent } = self.law.stresses(&site, &strains);
             self.energy += area * self.law.energy(&site, &strains);
@@ -162,13 +173,24 @@ impl<L: Law> Pass for GradientPass<'_, L> {
             for c in (0..S).filter(|&c| self.law.has(components[c])) {
                 for a in 0..K {
                     force[a] += area * stress[c] * gradients[c][a];
-                    self.stiffness[nodes[a]] += area * tangent[c][c].abs() * gradients[c][a].norm_squared();
+                    let stiffness = area * tangent[c][c].abs();
+                    if a < E::TRANSLATED {
+                        self.stiffness[coordinates[a][0] / 3] += stiffness * gradients[c][a].norm_squared();
+                    } else {
+                        let each = coordinates[a].iter().zip(&gradients[c][a]);
+                        each.for_each(|(own, slope)| self.stiffness[own / 3] += stiffness * slope * slope);
+                    }
                 }
             }
             for a in 0..K {
-                self.magnitude[nodes[a]] += force[a].norm();
+                if a < E::TRANSLATED {
+                    self.magnitude[coordinates[a][0] / 3] += force[a].norm();
+                } else {
+                    let each = coordinates[a].iter().zip(&force[a]);
+                    each.for_each(|(own, force)| self.magnitude[own / 3] += force.abs());
+                }
                 for i in 0..N {
-                    self.gradient[3 * nodes[a] + i] += force[a][i];
+                    self.gradient[coordinates[a][i]] += force[a][i];
                 }
             }
         }
@@ -196,7 +218,7 @@ impl<L: Law> Pass for HessianPass<'_, L> {
         for (index, (element, targets)) in elements.iter().zip(targets).enumerate() {
             let (components, area) = (element.components(), element.area());
             let site = Site { part, element: index, components };
-            let x = gather(element.nodes(), self.x);
+            let x = gather(element.coordinates(), self.x);
             let (strains, gradients) = element.evaluate(&x);
             let Stresses { mut stress, mut tangent } = self.law.stresses(&site, &strains);
             if matches!(self.kind, HessianKind::Clamped | HessianKind::Material) {
@@ -224,7 +246,7 @@ impl<L: Law> Pass for HessianPass<'_, L> {
                 HessianKind::Material => (),
                 _ => element.add_geometric(&x, &stress, &mut blocks),
             }
-            complete(&mut blocks);
+            complete(&mut blocks, E::TRANSLATED);
             let mut targets = targets.iter();
             for a in 0..K {
                 for b in 0..=a {
@@ -260,7 +282,7 @@ fn lower_entry_count(nodes: usize, coordinates: usize) -> usize {
     unknowns * (unknowns + 1) / 2
 }
 
-/// Scattered entries of an element's Hessian as (node, coordinate) pairs, in the order of the targets.
+/// Scattered entries of an element's Hessian as (point, coordinate) pairs, in the order of the targets.
 pub(crate) fn lower_entries(nodes: usize, coordinates: usize) -> Vec<[(usize, usize); 2]> {
     let mut entries = Vec::new();
     for a in 0..nodes {
@@ -292,12 +314,12 @@ impl<L: Law> Pass for ParameterPass<'_, L> {
         elements: &[E],
     ) {
         for (index, element) in elements.iter().enumerate() {
-            let (nodes, components) = (element.nodes(), element.components());
+            let (coordinates, components) = (element.coordinates(), element.components());
             let site = Site { part, element: index, components };
             if !(0..S).any(|c| self.law.depends(&site, c, self.parameters)) {
                 continue;
             }
-            let x = gather(nodes, self.x);
+            let x = gather(coordinates, self.x);
             let (strains, gradients) = element.evaluate(&x);
             for c in (0..S).filter(|&c| self.law.depends(&site, c, self.parameters)) {
                 self.law.derivative(&site, &strains, c, self.parameters, self.derivative);
@@ -306,7 +328,7 @@ impl<L: Law> Pass for ParameterPass<'_, L> {
                     for a in 0..K {
                         let force = element.area() * derivative * gradients[c][a];
                         for i in 0..N {
-                            column[3 * nodes[a] + i] += force[i];
+                            column[coordinates[a][i]] += force[i];
                         }
                     }
                 }
@@ -330,12 +352,13 @@ impl<L: Law> Pass for StiffnessPass<'_, L> {
         elements: &[E],
     ) {
         for (index, element) in elements.iter().enumerate() {
-            let (nodes, components, area) = (element.nodes(), element.components(), element.area());
-            let moved = gather::<K, N>(nodes, self.displacement);
+            let (coordinates, components, area) =
+                (element.coordinates(), element.components(), element.area());
+            let moved = gather::<K, N>(coordinates, self.displacement);
             if moved.iter().all(|d| d.iter().all(|&d| d == 0.0)) {
                 continue;
             }
-            let x = gather(nodes, self.x);
+            let x = gather(coordinates, self.x);
             let (strains, gradients) = element.evaluate(&x);
             let site = Site { part, element: index, components };
             let Stresses { stress, tangent } = self.law.stresses(&site, &strains);
@@ -343,7 +366,7 @@ impl<L: Law> Pass for StiffnessPass<'_, L> {
                 std::array::from_fn(|c| (0..K).map(|a| gradients[c][a].dot(&moved[a])).sum());
             let mut blocks = [[Block::<N>::zeros(); K]; K];
             element.add_geometric(&x, &stress, &mut blocks);
-            complete(&mut blocks);
+            complete(&mut blocks, E::TRANSLATED);
             for a in 0..K {
                 let scaled = scaled::<K, N, S, L>(&tangent, &gradients, a);
                 let mut force: Point<N> = (0..S).map(|c| scaled[c] * change[c]).sum();
@@ -352,7 +375,7 @@ impl<L: Law> Pass for StiffnessPass<'_, L> {
                         if b <= a { blocks[a][b] * moved[b] } else { blocks[b][a].transpose() * moved[b] };
                 }
                 for i in 0..N {
-                    self.force[3 * nodes[a] + i] += area * force[i];
+                    self.force[coordinates[a][i]] += area * force[i];
                 }
             }
         }
@@ -377,8 +400,8 @@ impl Pass for PredictedStrainPass<'_> {
         }
         self.strains.clear();
         for element in elements {
-            let nodes = element.nodes();
-            let (x, step) = (gather::<K, N>(nodes, self.x), gather::<K, N>(nodes, self.step));
+            let coordinates = element.coordinates();
+            let (x, step) = (gather::<K, N>(coordinates, self.x), gather::<K, N>(coordinates, self.step));
             let (strains, gradients) = element.evaluate(&x);
             self.strains.extend(
                 (0..S).map(|c| strains[c] + (0..K).map(|a| gradients[c][a].dot(&step[a])).sum::<f64>()),
@@ -403,7 +426,7 @@ impl Pass for StrainPass<'_> {
         for element in elements {
             let components = element.components();
             if components.contains(&self.component) {
-                let strains = element.strains(&gather(element.nodes(), self.x));
+                let strains = element.strains(&gather(element.coordinates(), self.x));
                 for c in (0..S).filter(|&c| components[c] == self.component) {
                     self.strains.push([strains[c], element.area()]);
                 }

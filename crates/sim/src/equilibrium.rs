@@ -40,7 +40,7 @@ impl Solver<'_> {
     /// # Panics
     /// If the length of `x` differs from the cloth's number of coordinates.
     pub fn solve(&mut self, curves: &Curves, x: &mut [f64], settings: &Settings) -> Equilibrium {
-        assert_eq!(x.len(), 3 * self.cloth.nodes(), "three coordinates per node");
+        assert_eq!(x.len(), 3 * self.cloth.points(), "three coordinates per node");
         if let Some(refused) = self.refused(x) {
             return refused;
         }

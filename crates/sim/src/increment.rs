@@ -32,7 +32,7 @@ impl Increment {
     pub(crate) fn new(cloth: &Cloth) -> Self {
         let zeros = vec![0.0; cloth.unknowns()];
         Self {
-            origin: vec![0.0; 3 * cloth.nodes()],
+            origin: vec![0.0; 3 * cloth.points()],
             diagonal: zeros.clone(),
             matrix: Vec::new(),
             push: zeros.clone(),

@@ -50,7 +50,7 @@
 //! use cloth_sim::samples;
 //!
 //! # fn main() -> cloth_sim::error::Result<()> {
-//! let (sample, _) = samples::strip(Model::Stvk, Diagonals::Forward, 100.0, 1.05)?;
+//! let (sample, _) = samples::strip(Model::STVK, Diagonals::Forward, 100.0, 1.05)?;
 //! let cloth = sample.cloth()?;
 //! let mut solver = Solver::new(&cloth);
 //! let mut x = sample.start.clone();

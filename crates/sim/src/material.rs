@@ -4,41 +4,82 @@ use crate::curve::{NegativeStrain, StiffnessCurve};
 use crate::strain_measure::StrainMeasure;
 use serde::{Deserialize, Serialize};
 
-/// A complete cloth model: a membrane and its bending (Miguel et al. 2012, §6).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Model {
-    /// Diagonalised St. Venant–Kirchhoff membrane, discrete shells.
+/// In-plane part of a cloth model (Miguel et al. 2012, §4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MembraneModel {
+    /// Diagonalised St. Venant–Kirchhoff triangles.
     Stvk,
-    /// Soft constraints of Baraff and Witkin, discrete shells.
+    /// Soft constraints of Baraff and Witkin.
     SoftConstraint,
-    /// In-plane springs, and ring-2 springs for bending.
+    /// Ring-1 springs, on a regular grid.
     Springs,
 }
 
-impl Model {
-    /// All models.
-    pub const ALL: [Self; 3] = [Self::Stvk, Self::SoftConstraint, Self::Springs];
+/// Out-of-plane part of a cloth model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BendingModel {
+    /// Moment against curvature, on any mesh: weft, warp and twist.
+    Sheet,
+    /// Discrete-shell hinges (Miguel et al. 2012, eq. 5), whose stiffness depends on the mesh.
+    Hinges,
+    /// Ring-2 springs, on a regular grid. A flat sheet of them has no bending stiffness.
+    Springs,
+}
 
-    /// True if the elements are springs, which need a regular grid; otherwise they are triangles and hinges, for any
-    /// mesh.
+/// A complete cloth model: a membrane and its bending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Model {
+    /// In the plane.
+    pub membrane: MembraneModel,
+    /// Out of it.
+    pub bending: BendingModel,
+}
+
+impl Model {
+    /// Diagonalised StVK and hinges.
+    pub const STVK: Self = Self { membrane: MembraneModel::Stvk, bending: BendingModel::Hinges };
+
+    /// Soft constraints and hinges.
+    pub const SOFT_CONSTRAINT: Self =
+        Self { membrane: MembraneModel::SoftConstraint, bending: BendingModel::Hinges };
+
+    /// In-plane and ring-2 springs.
+    pub const SPRINGS: Self = Self { membrane: MembraneModel::Springs, bending: BendingModel::Springs };
+
+    /// The published models (Miguel et al. 2012, §6).
+    pub const ALL: [Self; 3] = [Self::STVK, Self::SOFT_CONSTRAINT, Self::SPRINGS];
+
+    /// The same membrane with other bending.
+    pub const fn with(self, bending: BendingModel) -> Self {
+        Self { bending, ..self }
+    }
+
+    /// True if there are springs among the elements, which need a regular grid; triangles and hinges take any mesh.
     pub fn is_of_springs(self) -> bool {
-        match self {
-            Self::Springs => true,
-            Self::Stvk | Self::SoftConstraint => false,
-        }
+        self.membrane == MembraneModel::Springs || self.bending == BendingModel::Springs
+    }
+
+    /// The components that have a curve.
+    pub fn components(self) -> [Component; 6] {
+        use Component::{BendDiagonal, BendTwist, BendWarp, BendWeft, Shear, StretchWarp, StretchWeft};
+        let third = if self.bending == BendingModel::Sheet { BendTwist } else { BendDiagonal };
+        [StretchWeft, StretchWarp, Shear, BendWeft, BendWarp, third]
     }
 
     /// The strain measure of a component.
     pub fn strain_measure(self, component: Component) -> StrainMeasure {
-        use Component::{BendDiagonal, BendWarp, BendWeft, Shear, StretchWarp, StretchWeft};
-        match (component, self) {
-            (StretchWeft | StretchWarp, Self::Stvk) => StrainMeasure::Green,
-            (StretchWeft | StretchWarp, Self::SoftConstraint | Self::Springs) => StrainMeasure::Engineering,
-            (Shear, Self::Stvk | Self::SoftConstraint) => StrainMeasure::Shear,
-            (Shear, Self::Springs) => StrainMeasure::Diagonal,
-            (BendWeft | BendWarp | BendDiagonal, Self::Stvk | Self::SoftConstraint) => StrainMeasure::Hinge,
-            (BendWeft | BendWarp | BendDiagonal, Self::Springs) => StrainMeasure::RingTwo,
+        use Component::{BendDiagonal, BendTwist, BendWarp, BendWeft, Shear, StretchWarp, StretchWeft};
+        match component {
+            StretchWeft | StretchWarp if self.membrane == MembraneModel::Stvk => StrainMeasure::Green,
+            StretchWeft | StretchWarp => StrainMeasure::Engineering,
+            Shear if self.membrane == MembraneModel::Springs => StrainMeasure::Diagonal,
+            Shear => StrainMeasure::Shear,
+            BendWeft | BendWarp | BendDiagonal | BendTwist => match self.bending {
+                BendingModel::Sheet => StrainMeasure::Curvature,
+                BendingModel::Hinges => StrainMeasure::Hinge,
+                BendingModel::Springs => StrainMeasure::RingTwo,
+            },
         }
     }
 
@@ -51,28 +92,57 @@ impl Model {
         }
     }
 
-    /// The name in files and on the command line.
+    /// The name in files and on the command line: the membrane's, and after a `+` its bending if that is not the published.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Stvk => "stvk",
-            Self::SoftConstraint => "soft-constraint",
-            Self::Springs => "springs",
+        use {BendingModel as Bending, MembraneModel as Membrane};
+        match (self.membrane, self.bending) {
+            (Membrane::Stvk, Bending::Hinges) => "stvk",
+            (Membrane::Stvk, Bending::Sheet) => "stvk+sheet",
+            (Membrane::Stvk, Bending::Springs) => "stvk+springs",
+            (Membrane::SoftConstraint, Bending::Hinges) => "soft-constraint",
+            (Membrane::SoftConstraint, Bending::Sheet) => "soft-constraint+sheet",
+            (Membrane::SoftConstraint, Bending::Springs) => "soft-constraint+springs",
+            (Membrane::Springs, Bending::Hinges) => "springs+hinges",
+            (Membrane::Springs, Bending::Sheet) => "springs+sheet",
+            (Membrane::Springs, Bending::Springs) => "springs",
         }
     }
 
     /// Short description of membrane and bending.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::Stvk => "Diagonalised StVK, discrete shells",
-            Self::SoftConstraint => "Soft constraints, discrete shells",
-            Self::Springs => "Springs",
-        }
+    pub fn description(self) -> String {
+        let membrane = match self.membrane {
+            MembraneModel::Stvk => "Diagonalised StVK",
+            MembraneModel::SoftConstraint => "Soft constraints",
+            MembraneModel::Springs => "Springs",
+        };
+        let bending = match self.bending {
+            BendingModel::Sheet => "moment against curvature",
+            BendingModel::Hinges => "discrete shells",
+            BendingModel::Springs => "ring-2 springs",
+        };
+        format!("{membrane}, {bending}")
     }
 }
 
 impl std::fmt::Display for Model {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(self.name())
+    }
+}
+
+impl From<Model> for String {
+    fn from(model: Model) -> Self {
+        model.name().into()
+    }
+}
+
+impl TryFrom<String> for Model {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        let published: Vec<&str> = Self::ALL.iter().map(|model| model.name()).collect();
+        let found = Self::ALL.into_iter().find(|model| model.name() == name);
+        found.ok_or_else(|| format!("unknown model `{name}`, expected one of {}", published.join(", ")))
     }
 }
 
@@ -87,7 +157,7 @@ pub enum Compression {
     None,
 }
 
-/// One of the six strain components; each has its own curve.
+/// One of the strain components; a model has six of them, each with its own curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Component {
@@ -101,19 +171,22 @@ pub enum Component {
     BendWeft,
     /// Bending along warp.
     BendWarp,
-    /// Bending along neither yarn.
+    /// Bending of hinges and ring-2 springs along neither yarn.
     BendDiagonal,
+    /// Twist of a sheet between the yarns.
+    BendTwist,
 }
 
 impl Component {
     /// All components, in the order of their index in [`Curves`].
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::StretchWeft,
         Self::StretchWarp,
         Self::Shear,
         Self::BendWeft,
         Self::BendWarp,
         Self::BendDiagonal,
+        Self::BendTwist,
     ];
 
     /// True for weft or warp stretch.
@@ -121,9 +194,9 @@ impl Component {
         matches!(self, Self::StretchWeft | Self::StretchWarp)
     }
 
-    /// True for the three bending components.
+    /// True for bending and twist.
     pub fn is_bending(self) -> bool {
-        matches!(self, Self::BendWeft | Self::BendWarp | Self::BendDiagonal)
+        matches!(self, Self::BendWeft | Self::BendWarp | Self::BendDiagonal | Self::BendTwist)
     }
 }
 
@@ -136,13 +209,14 @@ impl std::fmt::Display for Component {
             Self::BendWeft => "bend-weft",
             Self::BendWarp => "bend-warp",
             Self::BendDiagonal => "bend-diagonal",
+            Self::BendTwist => "bend-twist",
         })
     }
 }
 
-/// Up to six curves, one per component. A component without a curve stores no energy.
+/// Curves, at most one per component. A component without a curve stores no energy.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Curves([Option<StiffnessCurve>; 6]);
+pub struct Curves([Option<StiffnessCurve>; Component::ALL.len()]);
 
 impl Curves {
     /// The curve of a component.
@@ -153,6 +227,11 @@ impl Curves {
     /// Sets the curve of a component.
     pub fn set(&mut self, component: Component, curve: StiffnessCurve) {
         self.0[component as usize] = Some(curve);
+    }
+
+    /// The curves of some components.
+    pub fn only(&self, components: &[Component]) -> Self {
+        components.iter().filter_map(|&component| Some((component, self.get(component)?.clone()))).collect()
     }
 
     /// The components that have a curve.

@@ -13,7 +13,7 @@ pub use triangle::Triangle;
 
 use crate::element::{Change, Pass};
 use crate::error::Result;
-use crate::material::{Component, Model};
+use crate::material::{Component, MembraneModel, Model};
 use crate::mesh::Mesh;
 
 /// Membrane elements.
@@ -34,10 +34,10 @@ impl Membrane {
     /// Springs on a mesh that is not a regular grid.
     pub fn new(model: Model, mesh: &Mesh, components: &[Component]) -> Result<Self> {
         let triangles = || (0..mesh.triangles.len()).map(|triangle| Triangle::new(mesh, triangle));
-        Ok(match model {
-            Model::Springs => Self::Springs(ring_one(mesh, components)?),
-            Model::SoftConstraint => Self::SoftConstraint(triangles().map(SoftTriangle).collect()),
-            Model::Stvk => Self::Stvk(triangles().map(StvkTriangle).collect()),
+        Ok(match model.membrane {
+            MembraneModel::Springs => Self::Springs(ring_one(mesh, components)?),
+            MembraneModel::SoftConstraint => Self::SoftConstraint(triangles().map(SoftTriangle).collect()),
+            MembraneModel::Stvk => Self::Stvk(triangles().map(StvkTriangle).collect()),
         })
     }
 

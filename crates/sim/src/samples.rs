@@ -8,7 +8,7 @@
 //! | [`cantilever`] | the weight; small deflections from beam theory |
 //! | [`picture_frame`] | no closed form: it buckles |
 
-use crate::cloth::{Cloth, Problem};
+use crate::cloth::{Cloth, Problem, Rest};
 use crate::curve::StiffnessCurve;
 use crate::error::Result;
 use crate::load::{Guided, Held};
@@ -81,6 +81,7 @@ impl Sample {
             tied,
             guided: &self.guided,
             planar: self.planar,
+            rest: Rest::Flat,
         }
     }
 

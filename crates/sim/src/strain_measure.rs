@@ -37,6 +37,8 @@ pub enum StrainMeasure {
     Shear,
     /// Engineering strain of the cells' diagonals.
     Diagonal,
+    /// Curvature or twist of a sheet, 1/m.
+    Curvature,
     /// Hinge strain of discrete shells, 1/m.
     Hinge,
     /// Strain of springs over two segments of a grid. Its curvature depends on the mesh:
@@ -45,15 +47,22 @@ pub enum StrainMeasure {
 }
 
 impl StrainMeasure {
-    /// All measures.
-    pub const ALL: [Self; 6] =
-        [Self::Green, Self::Engineering, Self::Shear, Self::Diagonal, Self::Hinge, Self::RingTwo];
+    /// All measures; of those with the same columns the one of fitted curves first.
+    pub const ALL: [Self; 7] = [
+        Self::Green,
+        Self::Engineering,
+        Self::Shear,
+        Self::Diagonal,
+        Self::Hinge,
+        Self::Curvature,
+        Self::RingTwo,
+    ];
 
     /// True for stretch and shear, false for bending.
     pub fn is_of_membrane(self) -> bool {
         match self {
             Self::Green | Self::Engineering | Self::Shear | Self::Diagonal => true,
-            Self::Hinge | Self::RingTwo => false,
+            Self::Curvature | Self::Hinge | Self::RingTwo => false,
         }
     }
 
@@ -62,7 +71,9 @@ impl StrainMeasure {
         match self {
             Self::Green => NegativeStrain::Green,
             Self::Engineering => NegativeStrain::Linear,
-            Self::Shear | Self::Diagonal | Self::Hinge | Self::RingTwo => NegativeStrain::Odd,
+            Self::Shear | Self::Diagonal | Self::Curvature | Self::Hinge | Self::RingTwo => {
+                NegativeStrain::Odd
+            }
         }
     }
 
@@ -74,7 +85,7 @@ impl StrainMeasure {
             Self::Engineering => ["engineering strain", "nominal stress"],
             Self::Shear => ["shear strain", "shear stress"],
             Self::Diagonal => ["diagonal strain", "diagonal stress"],
-            Self::Hinge | Self::RingTwo => ["curvature", "moment per width"],
+            Self::Curvature | Self::Hinge | Self::RingTwo => ["curvature", "moment per width"],
         }
     }
 
@@ -106,7 +117,7 @@ impl StrainMeasure {
                 "diagonal_stress_low_n_per_m",
                 "diagonal_stress_high_n_per_m",
             ],
-            Self::Hinge | Self::RingTwo => {
+            Self::Curvature | Self::Hinge | Self::RingTwo => {
                 ["curvature_per_m", "rigidity_n_m", "moment_n", "moment_low_n", "moment_high_n"]
             }
         }
@@ -114,20 +125,26 @@ impl StrainMeasure {
 
     /// True if strain, stress and stiffness are in 1/m, N and N·m; otherwise they are in 1, N/m and N/m.
     pub fn is_per_metre(self) -> bool {
-        self == Self::Hinge
+        matches!(self, Self::Curvature | Self::Hinge)
     }
 
     /// Ratio of element strain to the strain or curvature of a table: 3 for hinges, otherwise 1.
     pub fn strain_per_unit(self) -> f64 {
         match self {
             Self::Hinge => HINGE_STRAIN_PER_CURVATURE,
-            Self::Green | Self::Engineering | Self::Shear | Self::Diagonal | Self::RingTwo => 1.0,
+            Self::Green
+            | Self::Engineering
+            | Self::Shear
+            | Self::Diagonal
+            | Self::Curvature
+            | Self::RingTwo => 1.0,
         }
     }
 
     /// Plausible range of a cloth's largest stiffness, in the units of stiffness; `None` if it depends on the mesh.
     pub fn plausible_stiffness(self) -> Option<[f64; 2]> {
         match self {
+            Self::Curvature => Some(BENDING_STIFFNESS.map(|k| HINGE_STRAIN_PER_CURVATURE * k)),
             Self::Hinge => Some(BENDING_STIFFNESS),
             Self::RingTwo => None,
             Self::Green | Self::Engineering | Self::Shear | Self::Diagonal => Some(MEMBRANE_STIFFNESS),
@@ -140,7 +157,7 @@ impl StrainMeasure {
         let physical = match self {
             // Without cancellation: (λ² − 1)/(λ + 1).
             Self::Green => 2.0 * strain / ((1.0 + 2.0 * strain).sqrt() + 1.0),
-            Self::Engineering => strain,
+            Self::Engineering | Self::Curvature => strain,
             Self::Shear => strain.asin(),
             Self::Diagonal => (strain * (2.0 + strain)).asin(),
             Self::Hinge => strain / HINGE_STRAIN_PER_CURVATURE,
@@ -153,7 +170,7 @@ impl StrainMeasure {
     pub fn strain(self, physical: f64) -> Option<f64> {
         Some(match self {
             Self::Green => physical * (1.0 + 0.5 * physical),
-            Self::Engineering => physical,
+            Self::Engineering | Self::Curvature => physical,
             Self::Shear => physical.sin(),
             Self::Diagonal => (1.0 + physical.sin()).sqrt() - 1.0,
             Self::Hinge => HINGE_STRAIN_PER_CURVATURE * physical,
@@ -169,7 +186,7 @@ impl StrainMeasure {
         let own = stress(self.strain(physical)?);
         Some(match self {
             Self::Green => (1.0 + physical) * own,
-            Self::Engineering | Self::Shear | Self::Hinge => own,
+            Self::Engineering | Self::Shear | Self::Curvature | Self::Hinge => own,
             Self::Diagonal => {
                 let along = |sine: f64| {
                     let stretch = (1.0 + sine).sqrt();

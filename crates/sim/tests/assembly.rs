@@ -11,10 +11,10 @@ use cloth_sim::curve::StiffnessCurve;
 use cloth_sim::element::HessianKind;
 use cloth_sim::equilibrium::{Settings, Solver, Status};
 use cloth_sim::finite_difference::derivative_error;
-use cloth_sim::material::{Component, Compression, Curves, Model};
-use cloth_sim::mesh::{Diagonals, Grid};
+use cloth_sim::material::{BendingModel, Component, Compression, Curves, Model};
+use cloth_sim::mesh::{Diagonals, Grid, Mesh};
 use cloth_sim::samples::{GRAVITY, Sample};
-use nalgebra::{DMatrix, Rotation3, Vector3};
+use nalgebra::{DMatrix, Rotation3, Vector2, Vector3};
 
 /// All components, or those of the membrane in planar problems, with nonlinear curves.
 fn curves(model: Model, planar: bool) -> Curves {
@@ -28,7 +28,8 @@ fn curves(model: Model, planar: bool) -> Curves {
             StiffnessCurve::new(vec![0.0, 0.4 * end, end], stiffnesses, negative).expect("a proper curve"),
         )
     };
-    Component::ALL.into_iter().filter(|c| !(planar && c.is_bending())).map(component).collect()
+    let own = model.components().into_iter().filter(|c| !(planar && c.is_bending()));
+    own.map(component).collect()
 }
 
 fn crumpled(model: Model, planar: bool) -> Sample {
@@ -39,11 +40,16 @@ fn crumpled(model: Model, planar: bool) -> Sample {
     sample.hold(|p| if p.x == 0.0 { Some(0) } else { (p.x > 0.029).then_some(1) });
     sample.place(|p| Vector3::new(1.04 * p.x + 0.1 * p.y, 1.02 * p.y, p.z));
     sample.perturb(1.5e-3);
+    let nodes = sample.start.len();
+    sample.start = sample.cloth().expect("a proper sheet").state(&sample.start);
+    // Edges turn by up to 0.1 rad.
+    let turns = sample.start[nodes..].iter_mut().enumerate();
+    turns.for_each(|(i, turn)| *turn = 1e-3 * (i as f64).sin());
     sample
 }
 
 fn cases() -> impl Iterator<Item = (String, Sample)> {
-    Model::ALL.into_iter().flat_map(|model| {
+    Model::ALL.into_iter().chain([Model::STVK.with(BendingModel::Sheet)]).flat_map(|model| {
         [true, false].map(|planar| (format!("{model}, planar {planar}"), crumpled(model, planar)))
     })
 }
@@ -56,7 +62,7 @@ fn state(cloth: &Cloth, start: &[f64], unknowns: &[f64]) -> Vec<f64> {
 }
 
 fn gradient(cloth: &Cloth, curves: &Curves, x: &[f64]) -> (f64, Vec<f64>, ForceScale) {
-    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.nodes()));
+    let (mut gradient, mut scale) = (vec![0.0; x.len()], ForceScale::new(cloth.points()));
     let energy = cloth.gradient(curves, x, &mut gradient, &mut scale);
     (energy, gradient, scale)
 }
@@ -129,8 +135,10 @@ fn one_element_stands_for_all_between_parallel_lines() {
         let [cloth, plain] = [tied_cloth(&sample, &lines()), sample.cloth().unwrap()];
         let count = |cloth: &Cloth| cloth.strains(Component::Shear, &sample.start).len();
         assert!(2 * count(&cloth) <= count(&plain), "{name}: {} of {}", count(&cloth), count(&plain));
+        // A sheet that rolls has no rotations.
+        let nodes = &sample.start[..3 * sample.mesh.len()];
         let [(energy, tied, _), (plain_energy, forces, _)] =
-            [&cloth, &plain].map(|cloth| gradient(cloth, &sample.curves, &sample.start));
+            [&cloth, &plain].map(|cloth| gradient(cloth, &sample.curves, &cloth.state(nodes)));
         assert!((energy / plain_energy - 1.0).abs() < 1e-12, "{name}: {energy:e}, {plain_energy:e}");
         let largest = forces.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
         let sum =
@@ -146,9 +154,9 @@ fn one_element_stands_for_all_between_parallel_lines() {
 
 #[test]
 fn lines_that_are_not_parallel_are_a_status_and_the_state_stays() {
-    let sample = crumpled(Model::Stvk, false);
+    let sample = crumpled(Model::STVK, false);
     let cloth = tied_cloth(&sample, &lines());
-    let mut not_a_number = parallel(crumpled(Model::Stvk, false), &lines()).start;
+    let mut not_a_number = parallel(crumpled(Model::STVK, false), &lines()).start;
     not_a_number[7] = f64::NAN;
     for (start, status) in [(sample.start.clone(), Status::NotParallel), (not_a_number, Status::NotFinite)] {
         let mut solver = Solver::new(&cloth);
@@ -276,4 +284,32 @@ fn a_rigid_motion_turns_the_forces_and_leaves_the_energy() {
             assert!(total.norm() <= 1e-11 * largest, "{model}: {total}");
         }
     }
+}
+
+/// A node with three triangles is the wing of two edges of one triangle.
+#[test]
+fn the_hessian_counts_a_node_that_is_two_wings_twice() {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.4, 0.9], [0.5, 0.3]];
+    let mesh = Mesh::new(
+        corners.map(|[x, y]| Vector3::new(x, y, 0.1 * x * y)).to_vec(),
+        corners.map(|[x, y]| Vector2::new(x, y)).to_vec(),
+        vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    )
+    .unwrap();
+    let model = Model::STVK.with(BendingModel::Sheet);
+    let mut sample = Sample::at_rest(mesh, model, curves(model, false));
+    sample.hold(|p| (p.x == 0.0).then_some(0));
+    sample.start = sample.cloth().unwrap().state(&sample.start);
+    let cloth = sample.cloth().unwrap();
+    let start: Vec<f64> = sample.start.iter().enumerate().map(|(i, x)| x + 0.05 * (i as f64).sin()).collect();
+    let mut values = Vec::new();
+    cloth.hessian(&sample.curves, &start, HessianKind::Full, &mut values);
+    let at: Vec<f64> = cloth.unknown_coordinates().iter().map(|&c| start[c]).collect();
+    let value = |unknowns: &[f64]| {
+        let (_, gradient, _) = gradient(&cloth, &sample.curves, &state(&cloth, &start, unknowns));
+        cloth.unknown_coordinates().iter().map(|&c| gradient[c]).collect::<Vec<_>>()
+    };
+    let rows: Vec<f64> = dense(&cloth, &values).iter().copied().collect();
+    let error = derivative_error(value, &rows, &at, 1e-5, 0.0);
+    assert!(error < 1e-6, "{error:e}");
 }

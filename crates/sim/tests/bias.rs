@@ -27,7 +27,7 @@ fn bias_strip(cells: usize, diagonals: Diagonals, model: Model) -> Sample {
 
 /// Force of the pulling bar, N.
 fn force(cells: usize, diagonals: Diagonals) -> f64 {
-    let sample = bias_strip(cells, diagonals, Model::Stvk);
+    let sample = bias_strip(cells, diagonals, Model::STVK);
     let cloth = sample.cloth().expect("the sample is valid");
     let mut solver = Solver::new(&cloth);
     let mut x = sample.start.clone();
@@ -55,6 +55,6 @@ fn crossed_cells_do_not_lock() {
 
 #[test]
 fn springs_refuse_crossed_cells() {
-    let error = bias_strip(4, Diagonals::Crossed, Model::Springs).cloth().unwrap_err();
+    let error = bias_strip(4, Diagonals::Crossed, Model::SPRINGS).cloth().unwrap_err();
     assert_eq!(error, Error::NeedsGrid { what: "a membrane of springs" });
 }

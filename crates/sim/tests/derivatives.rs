@@ -10,7 +10,7 @@
 
 #![allow(clippy::print_stdout)]
 
-use cloth_sim::bending::Hinge;
+use cloth_sim::bending::{Hinge, Sheet, SheetTriangle};
 use cloth_sim::element::{Element, Point, complete};
 use cloth_sim::finite_difference::derivative_error;
 use cloth_sim::material::Component;
@@ -62,7 +62,7 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
     let strains = |x: &[f64]| element.strains(&stack::<K, N>(x)).to_vec();
     let gradients = |x: &[f64]| flatten(&element.gradients(&stack::<K, N>(x)));
     // A hundredth of the smallest distance: derivatives of an angle grow as the wing height shrinks.
-    let size = smallest_distance::<K, N>(x);
+    let size = smallest_distance(&stack::<K, N>(x)[..E::TRANSLATED]);
     let h = 1e-3 * size;
     let gradient = gradients(x);
     errors.gradient = errors.gradient.max(derivative_error(strains, &gradient, x, h, 0.0));
@@ -71,7 +71,7 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
         stress[c] = 1.0;
         let mut blocks = [[SMatrix::zeros(); K]; K];
         element.add_geometric(&stack::<K, N>(x), &stress, &mut blocks);
-        complete(&mut blocks);
+        complete(&mut blocks, E::TRANSLATED);
         let hessian = dense(&blocks);
         let component = |x: &[f64]| gradients(x)[c * K * N..(c + 1) * K * N].to_vec();
         let rows: Vec<f64> = hessian.transpose().iter().copied().collect();
@@ -82,22 +82,16 @@ fn check<const K: usize, const N: usize, const S: usize, E: Element<K, N, S>>(
     let stress: [f64; S] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
     let mut blocks = [[SMatrix::zeros(); K]; K];
     element.add_clamped(&stack::<K, N>(x), &stress, &mut blocks);
-    complete(&mut blocks);
+    complete(&mut blocks, E::TRANSLATED);
     let clamped = dense(&blocks).symmetric_eigenvalues();
     if clamped.max() > 0.0 {
         errors.clamped = errors.clamped.max(-clamped.min() / clamped.max());
     }
 }
 
-fn smallest_distance<const K: usize, const N: usize>(x: &[f64]) -> f64 {
-    let nodes: [Point<N>; K] = stack(x);
-    let mut smallest = f64::MAX;
-    for a in 0..K {
-        for b in 0..a {
-            smallest = smallest.min((nodes[a] - nodes[b]).norm());
-        }
-    }
-    smallest
+fn smallest_distance<const N: usize>(nodes: &[Point<N>]) -> f64 {
+    let pairs = (0..nodes.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+    pairs.map(|(a, b)| (nodes[a] - nodes[b]).norm()).fold(f64::MAX, f64::min)
 }
 
 /// Force change when the state is rotated arbitrarily and moved by up to a metre.
@@ -111,7 +105,8 @@ fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
     let axis = Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0));
     let rotation = Rotation3::new(axis);
     let shift = Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5));
-    let moved = nodes.map(|p| rotation * p + shift);
+    let mut moved = nodes;
+    moved[..E::TRANSLATED].iter_mut().for_each(|p| *p = rotation * *p + shift);
     let force = |nodes: &[Point<3>; K]| {
         let (strains, gradients) = (element.strains(nodes), element.gradients(nodes));
         std::array::from_fn::<_, K, _>(|a| (0..S).map(|c| gradients[c][a] * strains[c]).sum::<Vector3<f64>>())
@@ -121,8 +116,9 @@ fn check_rigid<const K: usize, const S: usize, E: Element<K, 3, S>>(
     // hinge's strain is in 1/m and reaches 10³.)
     let unit = element.gradients(&nodes).iter().flatten().fold(0.0, |m: f64, g| m.max(g.norm()));
     let largest = before.iter().fold(unit, |m: f64, f| m.max(f.norm()));
-    for (before, after) in before.iter().zip(&after) {
-        errors.rigid = errors.rigid.max((rotation * before - after).norm() / largest);
+    for (a, (before, after)) in before.iter().zip(&after).enumerate() {
+        let turned = if a < E::TRANSLATED { rotation * before } else { *before };
+        errors.rigid = errors.rigid.max((turned - after).norm() / largest);
     }
 }
 
@@ -181,10 +177,47 @@ fn hinge(rng: &mut StdRng) -> ([[f64; 3]; 4], Hinge) {
     (rest, hinge)
 }
 
+/// A triangle among four, with its points at rest: the one in the middle, or one with borders, or one beside a held one.
+fn sheet(rng: &mut StdRng) -> ([[f64; 3]; 6], SheetTriangle) {
+    let place = |x: f64, y: f64, rng: &mut StdRng| {
+        let mut near = |place: f64| (place + rng.random_range(-0.2..0.2)) * CELL;
+        Vector3::new(near(x), near(y), 0.2 * near(0.0))
+    };
+    let places = [(0.0, 0.0), (1.0, 0.0), (0.3, 1.0), (1.3, 1.0), (-0.7, 1.0), (0.6, -1.0)];
+    let nodes: Vec<Vector3<f64>> = places.map(|(x, y)| place(x, y, rng)).into();
+    let mesh = cloth_sim::mesh::Mesh::new(
+        nodes.clone(),
+        nodes.iter().map(|p| Vector2::new(p.x, p.y)).collect(),
+        vec![[0, 1, 2], [2, 1, 3], [0, 2, 4], [1, 0, 5]],
+    )
+    .expect("four triangles");
+    let held: Vec<bool> = match rng.random_bool(0.3) {
+        true => (0..6).map(|node| [0, 2, 4].contains(&node)).collect(),
+        false => vec![false; 6],
+    };
+    let triangles = Sheet::new(&mesh, &held, true).expect("a proper sheet").triangles;
+    let triangle = triangles[rng.random_range(0..triangles.len())];
+    let rest = std::array::from_fn(|a| nodes[triangle.coordinates[a][0] / 3].into());
+    (rest, triangle)
+}
+
+/// True if no triangle beside the first has collapsed or is folded onto it.
+fn is_open(triangle: &SheetTriangle, nodes: &[Point<3>]) -> bool {
+    let normal = |a: usize, b: usize, c: usize| (nodes[b] - nodes[a]).cross(&(nodes[c] - nodes[a]));
+    let own = normal(0, 1, 2);
+    (0..3).all(|e| {
+        let [from, to] = [(e + 1) % 3, (e + 2) % 3];
+        let height = |normal: Vector3<f64>| normal.norm() / (nodes[to] - nodes[from]).norm();
+        let beyond = normal(from, 3 + e, to);
+        height(own) > 0.1 * CELL
+            && (triangle.edges[e].share == 0.0 || height(beyond) > 0.1 * CELL && own.angle(&beyond) < 2.5)
+    })
+}
+
 fn run(states: usize) {
     let mut rng = StdRng::seed_from_u64(7);
-    let [mut stvk, mut soft, mut spring, mut shell]: [Errors; 4] = Default::default();
-    let mut folds = 0;
+    let [mut stvk, mut soft, mut spring, mut shell, mut plate]: [Errors; 5] = Default::default();
+    let (mut folds, mut sheets) = (0, 0);
     for _ in 0..states {
         let (rest, shape) = triangle(&mut rng);
         let x = state(&rest, &mut rng);
@@ -223,9 +256,20 @@ fn run(states: usize) {
             check::<4, 3, 1, _>(&fold, &x, &mut rng, &mut shell);
             check_rigid(&fold, &x, &mut rng, &mut shell);
         }
+
+        let (rest, triangle) = sheet(&mut rng);
+        let mut x = state(&rest, &mut rng);
+        if is_open(&triangle, &stack::<6, 3>(&x)) {
+            sheets += 1;
+            x.extend((0..3).map(|_| rng.random_range(-0.3..0.3) * CELL));
+            check::<7, 3, 4, _>(&triangle, &x, &mut rng, &mut plate);
+            check_rigid(&triangle, &x, &mut rng, &mut plate);
+        }
     }
-    assert!(folds > states / 3, "{folds} folded states");
-    for (name, errors) in [("stvk", stvk), ("soft", soft), ("spring", spring), ("hinge", shell)] {
+    assert!(folds > states / 3 && sheets > states / 3, "{folds} folded states, {sheets} sheets");
+    for (name, errors) in
+        [("stvk", stvk), ("soft", soft), ("spring", spring), ("hinge", shell), ("sheet", plate)]
+    {
         println!("{name}, {states} states: {errors:e}");
         assert!(errors.gradient <= 1e-6, "{name}: {errors:?}");
         assert!(errors.hessian <= 1e-5, "{name}: {errors:?}");

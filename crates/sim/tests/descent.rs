@@ -18,8 +18,8 @@ fn level_sheet() -> Sample {
     let grid = Grid { columns: 9, rows: 9, width: SIDE, height: SIDE, diagonals: Diagonals::Alternating };
     let stiffnesses =
         Component::ALL.map(|component| (component, if component.is_bending() { 1e-7 } else { 500.0 }));
-    let curves = linear_curves(Model::Stvk, &stiffnesses).unwrap();
-    let sample = Sample::at_rest(grid.mesh().unwrap(), Model::Stvk, curves);
+    let curves = linear_curves(Model::STVK, &stiffnesses).unwrap();
+    let sample = Sample::at_rest(grid.mesh().unwrap(), Model::STVK, curves);
     let mut sample = Sample { gravity: Vector3::new(0.0, 0.0, -9.81), ..sample };
     sample.hold(|p| (p.x == 0.0).then_some(0));
     sample

@@ -55,7 +55,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn free_cloth_falls_as_a_stone() {
-    let mut sample = hung(Model::Stvk, 5, 1.0);
+    let mut sample = hung(Model::STVK, 5, 1.0);
     sample.held.clear();
     sample.start = Sample::at_rest(sample.mesh.clone(), sample.model, sample.curves.clone()).start;
     let h = 0.01;
@@ -75,7 +75,7 @@ fn free_cloth_falls_as_a_stone() {
 
 #[test]
 fn steps_so_short_that_rounding_hides_the_weight_still_add_up() {
-    let mut sample = hung(Model::Stvk, 4, 1.0);
+    let mut sample = hung(Model::STVK, 4, 1.0);
     sample.held.clear();
     sample.start = Sample::at_rest(sample.mesh.clone(), sample.model, sample.curves.clone()).start;
     let cloth = in_motion(&sample);
@@ -88,7 +88,7 @@ fn steps_so_short_that_rounding_hides_the_weight_still_add_up() {
 #[test]
 fn the_integrators_have_their_orders() {
     // Soft constraints are smooth in compression, too.
-    let mut sample = hung(Model::SoftConstraint, 4, 0.02);
+    let mut sample = hung(Model::SOFT_CONSTRAINT, 4, 0.02);
     sample.perturb(2e-3);
     let run = |integrator, step| after(&sample, &Settings { step, integrator, ..Settings::default() }, 0.02);
     let reference = run(Integrator::RungeKutta, 0.02 / 3200.0);
@@ -106,7 +106,7 @@ fn the_integrators_have_their_orders() {
 
 #[test]
 fn undamped_cloth_never_has_more_energy_than_at_the_start() {
-    for model in [Model::Stvk, Model::Springs] {
+    for model in [Model::STVK, Model::SPRINGS] {
         for stiffness in [1e-2, 1.0, 1e2, 1e4] {
             let sample = hung(model, 6, stiffness);
             let cloth = in_motion(&sample);
@@ -135,7 +135,7 @@ fn undamped_cloth_never_has_more_energy_than_at_the_start() {
 
 #[test]
 fn the_account_of_energy_closes_as_steps_get_shorter() {
-    let sample = hung(Model::Stvk, 5, 0.01);
+    let sample = hung(Model::STVK, 5, 0.01);
     let cloth = in_motion(&sample);
     let wind = Some(Wind { velocity: Vector3::new(0.0, 1.0, 3.0), ..Wind::default() });
     let damping = Damping { mass: 5.0, stiffness: 1e-3 };
@@ -156,7 +156,7 @@ fn the_account_of_energy_closes_as_steps_get_shorter() {
 
 #[test]
 fn runge_kutta_is_stable_up_to_its_limit_and_refused_beyond() {
-    let sample = hung(Model::Stvk, 5, 1.0);
+    let sample = hung(Model::STVK, 5, 1.0);
     let cloth = in_motion(&sample);
     for damping in [Damping::default(), Damping { mass: 2.0, stiffness: 1e-3 }] {
         let limit = stable_step(&cloth, &sample.curves, &sample.start, &damping);
@@ -181,7 +181,7 @@ fn runge_kutta_is_stable_up_to_its_limit_and_refused_beyond() {
 
 #[test]
 fn the_limit_of_runge_kutta_is_that_of_the_fastest_mode() {
-    let sample = hung(Model::Stvk, 5, 1.0);
+    let sample = hung(Model::STVK, 5, 1.0);
     let cloth = in_motion(&sample);
     let rest = Sample::at_rest(sample.mesh.clone(), sample.model, sample.curves.clone()).start;
     let mut values = Vec::new();
@@ -198,7 +198,7 @@ fn the_limit_of_runge_kutta_is_that_of_the_fastest_mode() {
 
 #[test]
 fn conjugate_gradients_and_factorisation_agree() {
-    let sample = hung(Model::Stvk, 9, 1.0);
+    let sample = hung(Model::STVK, 9, 1.0);
     let settings = |linear| Settings { integrator: exact(linear), ..Settings::default() };
     let gradients = LinearSolver::ConjugateGradient { tolerance: 1e-13, max_iterations: 20_000 };
     let [direct, iterative] =
@@ -209,7 +209,7 @@ fn conjugate_gradients_and_factorisation_agree() {
 
 #[test]
 fn a_single_linearisation_is_near_the_solution_of_short_steps() {
-    let sample = hung(Model::Stvk, 6, 0.1);
+    let sample = hung(Model::STVK, 6, 0.1);
     let single = Integrator::ImplicitEuler { newton: Newton::Single, linear: LinearSolver::Direct };
     let difference = |step| {
         let run = |integrator| after(&sample, &Settings { step, integrator, ..Settings::default() }, 0.04);
@@ -221,7 +221,7 @@ fn a_single_linearisation_is_near_the_solution_of_short_steps() {
 
 #[test]
 fn guided_nodes_keep_to_their_directions() {
-    let mut sample = hung(Model::Stvk, 6, 1.0);
+    let mut sample = hung(Model::STVK, 6, 1.0);
     let corners: Vec<usize> = sample.held.drain(..).map(|held| held.node).collect();
     let slope = Vector3::new(0.3, 0.2, -0.5);
     for (free, normals) in [
@@ -255,11 +255,11 @@ fn guided_nodes_keep_to_their_directions() {
 #[test]
 fn damping_has_the_rate_that_its_law_says() {
     // A planar triangle of unit height, clamped along its base: one mode along the base, of stiffness A k/H².
-    let curves = samples::linear_curves(Model::Stvk, &[(Component::StretchWeft, 100.0)]).unwrap();
+    let curves = samples::linear_curves(Model::STVK, &[(Component::StretchWeft, 100.0)]).unwrap();
     let positions = [[0.0, -0.5], [1.0, 0.0], [0.0, 0.5]].map(|[x, y]| Vector3::new(x, y, 0.0));
     let material: Vec<Vector2<f64>> = positions.iter().map(|p| p.xy()).collect();
     let mesh = Mesh::new(positions.to_vec(), material, vec![[0, 1, 2]]).unwrap();
-    let mut sample = Sample::at_rest(mesh, Model::Stvk, curves);
+    let mut sample = Sample::at_rest(mesh, Model::STVK, curves);
     sample.planar = true;
     sample.hold(|p| (p.x == 0.0).then_some(0));
     sample.place(|p| Vector3::new(1.000_001 * p.x, p.y, 0.0));
@@ -284,7 +284,7 @@ fn damping_has_the_rate_that_its_law_says() {
 
 #[test]
 fn a_falling_sheet_comes_to_the_speed_of_its_drag() {
-    let mut sample = hung(Model::Stvk, 4, 1.0);
+    let mut sample = hung(Model::STVK, 4, 1.0);
     sample.held.clear();
     sample.start = Sample::at_rest(sample.mesh.clone(), sample.model, sample.curves.clone()).start;
     let cloth = in_motion(&sample);
@@ -306,7 +306,7 @@ fn a_falling_sheet_comes_to_the_speed_of_its_drag() {
 
 #[test]
 fn misuse_is_refused() {
-    let sample = hung(Model::Stvk, 4, 1.0);
+    let sample = hung(Model::STVK, 4, 1.0);
     let cloth = in_motion(&sample);
     let refused =
         |settings: Settings| Motion::new(&cloth, &sample.curves, sample.start.clone(), &settings).is_err();
@@ -339,8 +339,8 @@ fn misuse_is_refused() {
 /// reports this in the first steps that gain energy, long before numbers become non-finite.
 #[test]
 fn an_explicit_integrator_that_makes_energy_says_so() {
-    let mut sample = samples::hanging_sheet(Model::Stvk, 7).unwrap();
-    sample.curves = samples::fabric(Model::Stvk, [0.5, 0.05, 1e-9]).unwrap();
+    let mut sample = samples::hanging_sheet(Model::STVK, 7).unwrap();
+    sample.curves = samples::fabric(Model::STVK, [0.5, 0.05, 1e-9]).unwrap();
     let cloth = sample.cloth().unwrap();
     let limit = stable_step(&cloth, &sample.curves, &sample.start, &Damping::default());
     let run = |share: f64| {

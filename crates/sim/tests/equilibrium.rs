@@ -34,7 +34,7 @@ fn without_a_load_there_is_nothing_to_iterate() {
         let (found, x) = solve(&sample, &Settings::default());
         assert_eq!((found.iterations, x), (0, sample.start), "{model}: {found:?}");
         // A flat sheet of ring-2 springs has no bending stiffness.
-        let expected = if model == Model::Springs { Status::Unstable } else { Status::Converged };
+        let expected = if model == Model::SPRINGS { Status::Unstable } else { Status::Converged };
         assert_eq!(found.status, expected, "{model}");
     }
 }
@@ -76,7 +76,7 @@ fn height(x: &[f64]) -> f64 {
 
 #[test]
 fn a_flat_sheet_in_compression_is_unstable_and_buckles_when_touched() {
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let mut sample = compressed(model);
         let (flat, _) = solve(&sample, &Settings { escape: false, ..Settings::default() });
         assert_eq!((flat.status, flat.iterations), (Status::Unstable, 0), "{model}: {flat:?}");
@@ -92,7 +92,7 @@ fn a_flat_sheet_in_compression_is_unstable_and_buckles_when_touched() {
 fn a_flat_sheet_in_compression_has_two_branches() {
     let settings = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
     let mirror = |x: &mut [f64]| x.iter_mut().skip(2).step_by(3).for_each(|z| *z = -*z);
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let sample = compressed(model);
         let (left, x) = solve(&sample, &settings);
         println!("{model}: {left:?}");
@@ -119,7 +119,7 @@ fn what_is_unstable_is_left_and_flagged() {
     let samples = Model::ALL
         .into_iter()
         .map(|model| (model, frame(model)))
-        .chain([Model::Stvk, Model::SoftConstraint].map(|model| (model, compressed(model))))
+        .chain([Model::STVK, Model::SOFT_CONSTRAINT].map(|model| (model, compressed(model))))
         .chain(Model::ALL.map(|model| (model, crushed(model))));
     for (model, sample) in samples {
         let (stays, _) = solve(&sample, &Settings { escape: false, ..Settings::default() });
@@ -181,7 +181,7 @@ fn a_collapsed_sheet_converges_without_inversion() {
         let warp = Component::StretchWarp;
         let stiffnesses = [(weft, 10.0), (warp, 1e4), (Component::Shear, 1000.0)];
         // Diagonal springs would buckle as well.
-        let count = if model == Model::Springs { 2 } else { 3 };
+        let count = if model == Model::SPRINGS { 2 } else { 3 };
         sample.curves = samples::linear_curves(model, &stiffnesses[..count]).unwrap();
         sample.planar = true;
         let exact = sample.start.clone();
@@ -211,7 +211,7 @@ fn both_methods_find_the_same_equilibrium() {
     let tolerance = Tolerance::Relative(1e-9);
     let newton = Settings { tolerance, ..Settings::default() };
     let published = Settings { method: Method::LevenbergMarquardt, max_iterations: 500, ..newton };
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         for sample in [samples::cantilever(model, 9, 500.0), samples::hanging_sheet(model, 9)] {
             let sample = sample.unwrap();
             let ([first, second], [x, y]) = {
@@ -238,7 +238,7 @@ fn stiffness(cloth: &Cloth, curves: &Curves, x: &[f64]) -> DMatrix<f64> {
 /// step's matrix.
 #[test]
 fn the_published_method_keeps_the_damping_of_its_last_step() {
-    let sample = samples::hanging_sheet(Model::Stvk, 5).unwrap();
+    let sample = samples::hanging_sheet(Model::STVK, 5).unwrap();
     let cloth = sample.cloth().unwrap();
     let curves = &sample.curves;
     let newton = Settings { tolerance: Tolerance::Relative(1e-9), ..Settings::default() };
@@ -272,7 +272,7 @@ fn the_published_method_keeps_the_damping_of_its_last_step() {
 #[test]
 fn the_published_method_does_not_ask_for_stability() {
     let published = Settings { method: Method::LevenbergMarquardt, ..Settings::default() };
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let (flat, _) = solve(&compressed(model), &published);
         assert_eq!((flat.status, flat.iterations, flat.escaped), (Status::Converged, 0, false), "{model}");
     }
@@ -280,7 +280,7 @@ fn the_published_method_does_not_ask_for_stability() {
 
 #[test]
 fn what_nothing_holds_is_named() {
-    let mut sample = samples::cantilever(Model::Stvk, 4, 500.0).unwrap();
+    let mut sample = samples::cantilever(Model::STVK, 4, 500.0).unwrap();
     sample.held.clear();
     let error = sample.cloth().unwrap_err();
     assert_eq!(error, Error::Unpinned { parts: vec![Part { vertex: 0, vertices: 16 }], free: 6 });
@@ -293,7 +293,7 @@ fn what_nothing_holds_is_named() {
     let triangles = one.triangles.iter().copied().chain(one.triangles.iter().map(|t| t.map(|v| v + 16)));
     let mesh = Mesh::new(positions, material, triangles.collect()).unwrap();
     let mut sample =
-        Sample::at_rest(mesh, Model::Stvk, samples::fabric(Model::Stvk, [500.0, 50.0, 1e-5]).unwrap());
+        Sample::at_rest(mesh, Model::STVK, samples::fabric(Model::STVK, [500.0, 50.0, 1e-5]).unwrap());
     let parts = [0, 16].map(|vertex| Part { vertex, vertices: 16 }).to_vec();
     let error = sample.cloth().unwrap_err();
     assert_eq!(error, Error::Unpinned { parts: parts.clone(), free: 6 });
@@ -307,7 +307,7 @@ fn what_nothing_holds_is_named() {
 
 #[test]
 fn an_iteration_cap_is_a_status_and_the_best_state_stays() {
-    let sample = samples::cantilever(Model::Stvk, 9, 500.0).unwrap();
+    let sample = samples::cantilever(Model::STVK, 9, 500.0).unwrap();
     let before = sample.cloth().unwrap().energy(&sample.curves, &sample.start);
     for method in [Method::MixedNewton, Method::LevenbergMarquardt] {
         for max_iterations in [0, 1, 3] {
@@ -327,7 +327,7 @@ fn an_iteration_cap_is_a_status_and_the_best_state_stays() {
 
 #[test]
 fn what_is_not_finite_is_a_status() {
-    let sample = samples::cantilever(Model::Stvk, 6, 500.0).unwrap();
+    let sample = samples::cantilever(Model::STVK, 6, 500.0).unwrap();
     let last = sample.start.len() - 1;
     for bad in [f64::NAN, f64::INFINITY] {
         let mut sample = sample.clone();
@@ -369,7 +369,7 @@ fn a_stretch_problem_has_two_unknowns_a_node_and_nothing_of_bending() {
         }
         // Nodes couple through springs along cell sides or through triangles, never across two triangles.
         let per_node = stretch.entries() as f64 / (stretch.unknowns() as f64);
-        assert!(per_node < if model == Model::Springs { 6.0 } else { 8.0 }, "{model}: {per_node}");
+        assert!(per_node < if model == Model::SPRINGS { 6.0 } else { 8.0 }, "{model}: {per_node}");
         sample.planar = false;
         sample.curves = samples::fabric(model, [300.0, 30.0, 1e-6]).unwrap();
         let all = sample.cloth().unwrap();

@@ -9,7 +9,7 @@
 use cloth_sim::bending::{Bending, Hinge};
 use cloth_sim::cloth::{Cloth, Problem};
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
-use cloth_sim::element::{Element, Point, gather};
+use cloth_sim::element::{Element, Point, gather, stacked};
 use cloth_sim::equilibrium::{Settings, Solver};
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Compression, Curves, Model};
@@ -85,7 +85,7 @@ fn rigidity(mesh: &Mesh, degrees: f64) -> f64 {
             inside(middle.x) && inside(middle.y)
         })
         .map(|hinge| {
-            let [strain] = hinge.strains(&gather(hinge.nodes, &x));
+            let [strain] = hinge.strains(&gather(stacked(hinge.nodes), &x));
             0.5 * strain * strain * hinge.area_of()
         })
         .sum();
@@ -147,7 +147,8 @@ fn bending_springs_have_the_energy_of_the_chord() {
     let energy = |radius: f64| -> f64 {
         let x: Vec<f64> =
             mesh.material.iter().flat_map(|&m| <[f64; 3]>::from(rolled(m, 0.0, radius))).collect();
-        let strain = |spring: &Spring| Element::<2, 3, 1>::strains(spring, &gather(spring.nodes, &x))[0];
+        let strain =
+            |spring: &Spring| Element::<2, 3, 1>::strains(spring, &gather(stacked(spring.nodes), &x))[0];
         springs.iter().map(|spring| 0.5 * strain(spring).powi(2) * spring.area).sum()
     };
     let radius = 20.0 * chord;
@@ -162,8 +163,10 @@ fn bending_springs_have_the_energy_of_the_chord() {
 fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
     let mesh = samples::square(9, Diagonals::Forward).unwrap();
     let segment = SIDE / 8.0;
-    for model in [Model::Stvk, Model::Springs] {
-        let bending = Bending::new(model, &mesh, &[Component::BendWeft]).unwrap().unwrap();
+    for model in [Model::STVK, Model::SPRINGS] {
+        let bending = Bending::new(model, &mesh, &[Component::BendWeft], &vec![false; mesh.len()], false)
+            .unwrap()
+            .unwrap();
         let way = bending.rolled(Component::BendWeft).unwrap();
         assert!(bending.rolled(Component::BendWarp).is_none());
         let curve =
@@ -180,16 +183,18 @@ fn a_rolled_sheet_has_the_moment_that_its_elements_say() {
             match &bending {
                 Bending::Springs(springs) => {
                     let area: f64 = springs.iter().map(|spring| spring.area).sum();
-                    let strain =
-                        |spring: &Spring| Element::<2, 3, 1>::strains(spring, &gather(spring.nodes, &x))[0];
+                    let strain = |spring: &Spring| {
+                        Element::<2, 3, 1>::strains(spring, &gather(stacked(spring.nodes), &x))[0]
+                    };
                     springs.iter().map(|spring| curve.energy(strain(spring)) * spring.area).sum::<f64>()
                         / area
                 }
                 Bending::DiscreteShells(hinges) => {
                     let area = hinges.len() as f64 * segment * segment;
-                    let strain = |hinge: &Hinge| hinge.strains(&gather(hinge.nodes, &x))[0];
+                    let strain = |hinge: &Hinge| hinge.strains(&gather(stacked(hinge.nodes), &x))[0];
                     hinges.iter().map(|hinge| curve.energy(strain(hinge)) * hinge.area()).sum::<f64>() / area
                 }
+                _ => unreachable!("neither model bends as a sheet"),
             }
         };
         // Curvatures whose strains lie within the curve.
@@ -220,7 +225,7 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
             Component::Shear => 200.0,
             _ => rigidity / HINGE_STRAIN_PER_CURVATURE,
         };
-        let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+        let negative = Model::STVK.negative_strain(component, Compression::ZeroStrain);
         (component, StiffnessCurve::constant(stiffness, negative).expect("a proper curve"))
     };
     let curves: Curves = Component::ALL.into_iter().map(curve).collect();
@@ -229,7 +234,7 @@ fn tips(diagonals: Diagonals, as_cylinder: bool) -> [f64; 2] {
         gravity: Vector3::new(0.0, 0.0, -samples::GRAVITY),
         held: &held,
         tied: if as_cylinder { free } else { &[] },
-        ..Problem::new(&mesh, Model::Stvk, &Component::ALL)
+        ..Problem::new(&mesh, Model::STVK, &Component::ALL)
     })
     .expect("a sheet that is held");
     let mut x = mesh.coordinates();

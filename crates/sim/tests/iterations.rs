@@ -34,7 +34,7 @@ const BENDING: [Component; 3] = [Component::BendWeft, Component::BendWarp, Compo
 
 #[test]
 fn a_cantilever_takes_few_steps_however_stiff_its_membrane() {
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         for stretch in [500.0, 1e4] {
             let sample = samples::cantilever(model, 13, stretch).unwrap();
             let found = warm(&sample, &BENDING, 1.5);
@@ -49,7 +49,7 @@ fn a_cantilever_takes_few_steps_however_stiff_its_membrane() {
 
 #[test]
 fn a_cantilever_falls_from_flat_with_stretch_a_billion_times_bending() {
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let sample = samples::cantilever(model, 13, 1e4).unwrap();
         let cloth = sample.cloth().unwrap();
         let mut x = sample.start.clone();
@@ -79,7 +79,7 @@ fn a_picture_frame_buckles() {
 #[test]
 fn a_sheet_does_not_creep_into_its_buckle() {
     for angle in [0.05, 0.1, 0.2] {
-        let sample = samples::picture_frame(Model::Stvk, 25, angle).unwrap();
+        let sample = samples::picture_frame(Model::STVK, 25, angle).unwrap();
         let found = warm(&sample, &[Component::Shear], 1.0 / 1.5);
         println!("{angle} rad: {} steps, {} factorisations", found.iterations, found.factorisations);
         assert!(found.factorisations <= 30, "{angle}: {found:?}");

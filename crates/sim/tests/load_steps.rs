@@ -102,7 +102,7 @@ fn a_clamp_turns_by_120_degrees() {
 
 #[test]
 fn nowhere_to_go_is_a_solve() {
-    let sample = samples::cantilever(Model::Stvk, 9, 500.0).unwrap();
+    let sample = samples::cantilever(Model::STVK, 9, 500.0).unwrap();
     let cloth = sample.cloth().unwrap();
     let mut solver = Solver::new(&cloth);
     let mut x = sample.start.clone();
@@ -116,7 +116,7 @@ fn nowhere_to_go_is_a_solve() {
 
 #[test]
 fn what_cannot_be_reached_leaves_the_last_balance() {
-    let (sample, _) = samples::strip(Model::Stvk, Diagonals::Forward, 300.0, 1.05).unwrap();
+    let (sample, _) = samples::strip(Model::STVK, Diagonals::Forward, 300.0, 1.05).unwrap();
     let cloth = sample.cloth().unwrap();
     let mut solver = Solver::new(&cloth);
     let mut x = sample.start.clone();

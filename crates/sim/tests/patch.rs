@@ -28,14 +28,14 @@ fn strains_are_uniform_and_nothing_pulls_inside() {
             let low = strains.iter().fold(f64::MAX, |low, s| low.min(s[0]));
             let high = strains.iter().fold(f64::MIN, |high, s| high.max(s[0]));
             // The two diagonals of springs differ in sign.
-            if !(model == Model::Springs && component == Component::Shear) {
+            if !(model == Model::SPRINGS && component == Component::Shear) {
                 assert!(high - low < 1e-13, "{model}, {component}: {low} to {high}");
             }
             let area: f64 = strains.iter().map(|s| s[1]).sum();
             assert!((area - samples::SIDE * samples::SIDE).abs() < 1e-15, "{model}, {component}: {area}");
         }
         let mut gradient = vec![0.0; sample.start.len()];
-        let mut scale = ForceScale::new(cloth.nodes());
+        let mut scale = ForceScale::new(cloth.points());
         let _ = cloth.gradient(&sample.curves, &sample.start, &mut gradient, &mut scale);
         let largest = scale.magnitude.iter().fold(0.0, |a: f64, &b| a.max(b));
         for &coordinate in cloth.unknown_coordinates() {

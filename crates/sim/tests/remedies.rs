@@ -41,7 +41,7 @@ fn a_strip_needs_none() {
 
 #[test]
 fn an_unstable_balance_that_is_left_counts() {
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let left = solve(&pressed(model), &Settings::default());
         assert!(left.converged() && left.escaped && left.remedies.escapes > 0, "{left:?}");
         let stays = solve(&pressed(model), &Settings { escape: false, ..Settings::default() });
@@ -51,7 +51,7 @@ fn an_unstable_balance_that_is_left_counts() {
 
 #[test]
 fn matrices_that_are_not_positive_definite_count() {
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let found = solve(&samples::picture_frame(model, 13, 0.2).unwrap(), &Settings::default());
         assert!(found.converged() && found.remedies.clamped > 0 && found.remedies.damped > 0, "{found:?}");
     }
@@ -59,8 +59,8 @@ fn matrices_that_are_not_positive_definite_count() {
 
 #[test]
 fn a_solve_that_newton_cannot_finish_counts() {
-    let mut sample = samples::cantilever(Model::Stvk, 6, 500.0).unwrap();
-    sample.curves = samples::fabric(Model::Stvk, [0.0; 3]).unwrap();
+    let mut sample = samples::cantilever(Model::STVK, 6, 500.0).unwrap();
+    sample.curves = samples::fabric(Model::STVK, [0.0; 3]).unwrap();
     let falling = solve(&sample, &Settings::default());
     assert!(!falling.converged() && falling.remedies.levenberg_marquardt > 0, "{falling:?}");
     // Another membrane does not help a cloth without stiffness either.
@@ -70,7 +70,7 @@ fn a_solve_that_newton_cannot_finish_counts() {
 /// 1, ½, ¼ … 1/256 of the motion: nine steps that are too long.
 #[test]
 fn load_steps_that_are_halved_count() {
-    let (sample, _) = samples::strip(Model::Stvk, Diagonals::Forward, 300.0, 1.0).unwrap();
+    let (sample, _) = samples::strip(Model::STVK, Diagonals::Forward, 300.0, 1.0).unwrap();
     let cloth = sample.cloth().unwrap();
     let mut target = sample.start.clone();
     target.iter_mut().for_each(|x| *x *= 2.0);
@@ -85,7 +85,7 @@ fn load_steps_that_are_halved_count() {
 
 #[test]
 fn a_linearised_step_that_is_clamped_counts() {
-    let sample = pressed(Model::Stvk);
+    let sample = pressed(Model::STVK);
     let cloth = sample.cloth().unwrap();
     let clamped = |step| {
         let integrator = Integrator::ImplicitEuler { newton: Newton::Single, linear: LinearSolver::Direct };

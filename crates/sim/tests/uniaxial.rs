@@ -38,7 +38,7 @@ fn the_clips_pull_with_the_nominal_stress() {
                     .map(|held| solver.gradient()[3 * held.node] / (force / 5.0))
                     .collect();
                 let [first, inner @ .., last] = &rows[..] else { panic!("{rows:?}") };
-                if model == Model::Springs {
+                if model == Model::SPRINGS {
                     let off = |row: &f64, share: f64| (row - share).abs() > 1e-12;
                     assert!(!off(first, 0.5) && !off(last, 0.5) && !inner.iter().any(|row| off(row, 1.0)));
                 }
@@ -91,7 +91,7 @@ fn on_the_bias_the_yarns_still_carry_their_own_stretch() {
             let stretched = turn.inverse() * Vector2::new(1.1 * material.x, material.y);
             Vector3::new(stretched.x, stretched.y, 0.0)
         });
-        let strain = if model == Model::Stvk { 0.105 } else { 0.1 };
+        let strain = if model == Model::STVK { 0.105 } else { 0.1 };
         let energy = 0.5 * 100.0 * strain * strain * SIDE * SIDE;
         let found = sample.cloth().unwrap().energy(&sample.curves, &sample.start);
         assert!((found - energy).abs() < 1e-12 * energy, "{model}: {found} {energy}");
@@ -112,7 +112,7 @@ fn models_agree_for_small_strains() {
         let size = cloth.unknowns();
         DMatrix::from_fn(size, size, |i, j| cloth.entry(i, j).map_or(0.0, |place| values[place]))
     };
-    let (stvk, soft) = (matrix(Model::Stvk), matrix(Model::SoftConstraint));
+    let (stvk, soft) = (matrix(Model::STVK), matrix(Model::SOFT_CONSTRAINT));
     assert!((&stvk - &soft).amax() < 1e-12 * stvk.amax());
     let energy = |model, component, map: fn(Vector3<f64>) -> Vector3<f64>| {
         let curves = samples::linear_curves(model, &[(component, 300.0)]).unwrap();
@@ -120,15 +120,15 @@ fn models_agree_for_small_strains() {
         sample.hold(|p| (p.x == 0.0).then_some(0));
         sample.place(map);
         let cloth = sample.cloth().unwrap();
-        let (mut gradient, mut scale) = (vec![0.0; sample.start.len()], ForceScale::new(cloth.nodes()));
+        let (mut gradient, mut scale) = (vec![0.0; sample.start.len()], ForceScale::new(cloth.points()));
         cloth.gradient(&sample.curves, &sample.start, &mut gradient, &mut scale)
     };
     let stretch: fn(Vector3<f64>) -> Vector3<f64> = |p| Vector3::new(1.0001 * p.x, p.y, 0.0);
     let shear: fn(Vector3<f64>) -> Vector3<f64> = |p| Vector3::new(p.x + 1e-4 * p.y, p.y, 0.0);
-    let ratio = |component, map, model| energy(model, component, map) / energy(Model::Stvk, component, map);
-    for model in [Model::SoftConstraint, Model::Springs] {
+    let ratio = |component, map, model| energy(model, component, map) / energy(Model::STVK, component, map);
+    for model in [Model::SOFT_CONSTRAINT, Model::SPRINGS] {
         assert!((ratio(Component::StretchWeft, stretch, model) - 1.0).abs() < 2e-4);
     }
-    assert!((ratio(Component::Shear, shear, Model::SoftConstraint) - 1.0).abs() < 1e-4);
-    assert!((ratio(Component::Shear, shear, Model::Springs) - 0.25).abs() < 1e-4);
+    assert!((ratio(Component::Shear, shear, Model::SOFT_CONSTRAINT) - 1.0).abs() < 1e-4);
+    assert!((ratio(Component::Shear, shear, Model::SPRINGS) - 0.25).abs() < 1e-4);
 }

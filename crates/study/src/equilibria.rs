@@ -52,7 +52,7 @@ pub(crate) fn runs(fabric: &KnownFabric, extent: &Extent, progress: &dyn Progres
             let finest = scene.balance(&reference, &settings)?;
             let ladder = Ladder { scene: &scene, reference: &reference, model, finest };
             runs.extend(ladder.meshes(extent, progress)?);
-            if model == Model::Stvk {
+            if model == Model::STVK {
                 runs.extend(ladder.tolerances(extent)?);
             }
         }

@@ -33,7 +33,7 @@ pub(crate) struct Trial {
 impl Trial {
     /// StVK with the default settings.
     pub(crate) fn usual(nodes: usize) -> Self {
-        Self { model: Model::Stvk, solver: Solver::Default, nodes, points: POINTS, every: 1 }
+        Self { model: Model::STVK, solver: Solver::Default, nodes, points: POINTS, every: 1 }
     }
 
     pub(crate) fn settings(&self) -> Settings {
@@ -73,7 +73,7 @@ pub(crate) fn reference(
     let settings = Trial::usual(nodes).settings();
     let known = Knowledge::default();
     let report = incremental::fit(&subject.set, &Stage::ALL, &known, &settings, &mut Watch::default())?;
-    let reference = Reference { model: Model::Stvk, curves: report.curves().clone() };
+    let reference = Reference { model: Model::STVK, curves: report.curves().clone() };
     Ok((reference, format!("the curves of the default fit on {nodes}x{nodes} nodes")))
 }
 

@@ -97,7 +97,7 @@ impl Stage {
             ..Rig::default()
         };
         let settings = Settings {
-            model: Model::Stvk,
+            model: Model::STVK,
             nodes: Some([nodes; 2]),
             points,
             growth: GrowthRule { gain: ALWAYS, ..GrowthRule::default() },

@@ -64,8 +64,8 @@ impl Reference {
             }
             let curvature = f64::max(0.5 * last / HINGE_STRAIN_PER_CURVATURE, 1.0);
             let moment = curve.stress(HINGE_STRAIN_PER_CURVATURE * curvature);
-            let rolled =
-                Bending::new(model, mesh, &[component])?.and_then(|bending| bending.rolled(component));
+            let bending = Bending::new(model, mesh, &[component], &vec![false; mesh.len()], false)?;
+            let rolled = bending.and_then(|bending| bending.rolled(component));
             let stiffness = rolled
                 .map_or(0.0, |rolled: Rolled| moment / (rolled.lever(curvature) * rolled.strain(curvature)));
             return StiffnessCurve::constant(
@@ -131,14 +131,14 @@ mod tests {
     #[test]
     fn a_curve_told_in_another_model_makes_the_same_loads() {
         let curve = |k: f64, component| {
-            let negative = Model::Stvk.negative_strain(component, Compression::ZeroStrain);
+            let negative = Model::STVK.negative_strain(component, Compression::ZeroStrain);
             StiffnessCurve::new(vec![0.0, 0.05, 0.1], vec![k, 1.3 * k, 2.0 * k], negative).unwrap()
         };
         let pairs = [(Component::StretchWeft, 400.0), (Component::Shear, 90.0)];
         let curves = pairs.map(|(component, k)| (component, curve(k, component)));
-        let reference = Reference { model: Model::Stvk, curves: curves.into_iter().collect() };
+        let reference = Reference { model: Model::STVK, curves: curves.into_iter().collect() };
         let grid = Grid { columns: 5, rows: 5, width: 0.1, height: 0.1, diagonals: Diagonals::Alternating };
-        for model in [Model::SoftConstraint, Model::Springs] {
+        for model in [Model::SOFT_CONSTRAINT, Model::SPRINGS] {
             let told = reference.told_in(model, &grid.mesh().unwrap()).unwrap();
             for component in [Component::StretchWeft, Component::Shear] {
                 let curve = told.get(component).unwrap();

@@ -18,10 +18,10 @@ fuzz_target!(|bytes: &[u8]| {
         CurveFile::read(&SAMPLE.put("back.csv", text.as_bytes())).expect("what was written can be read");
     assert_eq!((back.measure, back.to_csv()), (file.measure, text));
     for (component, model, compression) in [
-        (Component::StretchWeft, Model::Stvk, Compression::ZeroStrain),
-        (Component::StretchWarp, Model::SoftConstraint, Compression::None),
-        (Component::Shear, Model::Springs, Compression::ZeroStrain),
-        (Component::BendDiagonal, Model::Stvk, Compression::ZeroStrain),
+        (Component::StretchWeft, Model::STVK, Compression::ZeroStrain),
+        (Component::StretchWarp, Model::SOFT_CONSTRAINT, Compression::None),
+        (Component::Shear, Model::SPRINGS, Compression::ZeroStrain),
+        (Component::BendDiagonal, Model::STVK, Compression::ZeroStrain),
     ] {
         let negative = model.negative_strain(component, compression);
         let Some(curve) = answer(file.curve(component, model, negative), bytes) else { continue };

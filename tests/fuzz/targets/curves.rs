@@ -25,7 +25,7 @@ const BEND: [Component; 3] = [Component::BendWeft, Component::BendWarp, Componen
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&flags, rest)) = bytes.split_first() else { return };
-    let model = if flags & 1 == 0 { Model::Stvk } else { Model::SoftConstraint };
+    let model = if flags & 1 == 0 { Model::STVK } else { Model::SOFT_CONSTRAINT };
     let components: &[Component] = match flags >> 1 & 3 {
         0 => &STRETCH,
         1 => &[Component::Shear],

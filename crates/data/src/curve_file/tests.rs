@@ -14,7 +14,7 @@ fn curve(text: &str, component: Component, model: Model) -> Result<StiffnessCurv
 }
 
 fn weft(text: &str) -> Result<StiffnessCurve> {
-    curve(text, Component::StretchWeft, Model::Stvk)
+    curve(text, Component::StretchWeft, Model::STVK)
 }
 
 #[test]
@@ -32,11 +32,11 @@ fn rows_are_control_points_and_the_stiffness_at_zero_is_the_first() {
 #[test]
 fn moments_over_curvature_become_stresses_of_hinges() {
     let text = "curvature_per_m,moment_n\n0,0\n10,2e-4\n20,6e-4\n";
-    let found = curve(text, Component::BendWarp, Model::SoftConstraint).unwrap();
+    let found = curve(text, Component::BendWarp, Model::SOFT_CONSTRAINT).unwrap();
     assert!((found.stress(30.0) - 2e-4).abs() < 1e-15 && (found.stress(60.0) - 6e-4).abs() < 1e-15);
-    let error = curve(text, Component::BendWarp, Model::Springs).unwrap_err().to_string();
+    let error = curve(text, Component::BendWarp, Model::SPRINGS).unwrap_err().to_string();
     assert!(error.contains("model: found moments over curvature"), "{error}");
-    let error = curve(text, Component::Shear, Model::Stvk).unwrap_err().to_string();
+    let error = curve(text, Component::Shear, Model::STVK).unwrap_err().to_string();
     assert!(error.contains("found a column curvature_per_m, expected shear_strain"), "{error}");
 }
 
@@ -44,7 +44,7 @@ fn moments_over_curvature_become_stresses_of_hinges() {
 fn rows_below_zero_must_be_what_the_model_makes_of_those_above() {
     let shear = |low| {
         let text = format!("strain,stress_n_per_m\n-0.1,{low}\n0,0\n0.1,12\n");
-        curve(&text, Component::Shear, Model::Stvk)
+        curve(&text, Component::Shear, Model::STVK)
     };
     assert_eq!(shear(-12.05).unwrap().strains(), [0.0, 0.1]);
     let error = shear(-12.5).unwrap_err().to_string();
@@ -94,7 +94,7 @@ fn a_table_comes_back_from_its_curve() {
         let file = read(text).unwrap();
         let component =
             if file.measure == Some(StrainMeasure::Hinge) { Component::BendWeft } else { Component::Shear };
-        let found = file.curve(component, Model::Stvk, NegativeStrain::Odd).unwrap();
+        let found = file.curve(component, Model::STVK, NegativeStrain::Odd).unwrap();
         assert_eq!(file.to_csv(), text);
         let again = file.with_curve(&found);
         let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-15 * b.abs());
@@ -107,7 +107,7 @@ fn a_table_comes_back_from_its_curve() {
 fn in_compression_without_stress_rows_below_zero_must_have_none() {
     let slack = |low| {
         let text = format!("strain,stress_n_per_m\n-0.1,{low}\n0,0\n0.1,12\n");
-        read(&text)?.curve(Component::StretchWeft, Model::Stvk, NegativeStrain::Slack)
+        read(&text)?.curve(Component::StretchWeft, Model::STVK, NegativeStrain::Slack)
     };
     assert!(slack("0").is_ok());
     let error = slack("-1").unwrap_err().to_string();
@@ -127,7 +127,7 @@ fn scaling_takes_stiffnesses_and_bands_along() {
     assert_eq!(scaled.stresses, [-90.0, 0.0, 90.0, 150.0]);
     assert_eq!(scaled.band[1], Some(vec![-87.0, 0.0, 93.0, 153.0]));
     let [curve, wider] =
-        [&file, &scaled].map(|f| f.curve(Component::Shear, Model::Stvk, NegativeStrain::Odd).unwrap());
+        [&file, &scaled].map(|f| f.curve(Component::Shear, Model::STVK, NegativeStrain::Odd).unwrap());
     for strain in [0.1, 0.3, 0.7] {
         assert!((wider.stress(2.0 * strain) - 3.0 * curve.stress(strain)).abs() < 1e-11);
     }
@@ -188,11 +188,11 @@ fn beside_green_strain_stand_engineering_strain_and_nominal_stress() {
 fn a_table_says_whose_strain_it_is_over() {
     let of = |header: &str| format!("{header}\n0,0\n0.1,12\n0.2,28\n");
     let tables = [
-        ("green_strain,pk2_stress_n_per_m", Component::StretchWarp, Model::Stvk),
-        ("engineering_strain,nominal_stress_n_per_m", Component::StretchWarp, Model::SoftConstraint),
-        ("engineering_strain,nominal_stress_n_per_m", Component::StretchWeft, Model::Springs),
-        ("shear_strain,shear_stress_n_per_m", Component::Shear, Model::SoftConstraint),
-        ("diagonal_strain,diagonal_stress_n_per_m", Component::Shear, Model::Springs),
+        ("green_strain,pk2_stress_n_per_m", Component::StretchWarp, Model::STVK),
+        ("engineering_strain,nominal_stress_n_per_m", Component::StretchWarp, Model::SOFT_CONSTRAINT),
+        ("engineering_strain,nominal_stress_n_per_m", Component::StretchWeft, Model::SPRINGS),
+        ("shear_strain,shear_stress_n_per_m", Component::Shear, Model::SOFT_CONSTRAINT),
+        ("diagonal_strain,diagonal_stress_n_per_m", Component::Shear, Model::SPRINGS),
     ];
     for (header, component, model) in tables {
         let named = curve(&of(header), component, model).unwrap();

@@ -7,7 +7,7 @@ use super::fabric::KnownFabric;
 use super::test::{Support, Test, moved};
 use crate::error::{Error, Result};
 use crate::frame::Kind;
-use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::cloth::{Cloth, Problem, Rest};
 use cloth_sim::equilibrium::{Settings, Solver, Status};
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Curves};
@@ -166,6 +166,7 @@ impl<'a> Truth<'a> {
             tied: &self.lines(holders),
             guided: &[],
             planar,
+            rest: Rest::Flat,
         })
         .map_err(|source| Error::Mechanics { context: format!("rig, {}", self.test.kind), source })
     }

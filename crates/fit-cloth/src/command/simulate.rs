@@ -1,7 +1,7 @@
 //! `fit-cloth simulate`: simulates a scene with a material, in motion or at rest.
 
 use crate::failure::Failure;
-use crate::options::{CompressionChoice, STABLE, refuse_within};
+use crate::options::{BendingChoice, CompressionChoice, STABLE, refuse_within};
 use crate::outcome::Outcome;
 use crate::output::Output;
 use crate::plot::write_simulation_plots;
@@ -12,12 +12,12 @@ use clap::{Args, ValueEnum};
 use cloth_data::error::Error;
 use cloth_data::io::ShapeFormat;
 use cloth_fit::material::Material;
+use cloth_fit::material::bending::Converted;
 use cloth_fit::material::check::{check_curves, refuse_unstable};
 use cloth_fit::result::check_output;
 use cloth_scene::result::{simulation_json, write_simulation};
 use cloth_scene::scene::Scene;
 use cloth_scene::simulation::{Simulation, in_motion, to_rest};
-use cloth_sim::material::Curves;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -53,6 +53,9 @@ pub struct SimulateOptions {
     /// Accept curves whose stiffness or tangent is not positive
     #[arg(long)]
     pub allow_unstable: bool,
+    /// Bending: moment against curvature, or the hinges or springs of the material [default: the material's]
+    #[arg(long, value_enum)]
+    pub bending: Option<BendingChoice>,
     /// Weft and warp under compression [default: from the material]
     #[arg(long, value_enum)]
     pub compression: Option<CompressionChoice>,
@@ -99,10 +102,16 @@ pub fn run(
         Some(choice) => material.with_compression(choice.into())?,
         None => material,
     };
+    let material = match options.bending {
+        Some(choice) => {
+            let Converted { material, twist } = material.bending_as(choice.into())?;
+            twist.iter().for_each(|words| warn(printing, words));
+            material
+        }
+        None => material,
+    };
     // Only the components that the scene uses.
-    let parts = scene.components(&material)?;
-    let curves = parts.into_iter().filter_map(|part| Some((part, material.curves.get(part)?.clone())));
-    let curves: Curves = curves.collect();
+    let curves = material.curves.only(&scene.components(&material)?);
     if !options.allow_unstable {
         refuse_unstable(&curves, &options.material, STABLE)?;
     }

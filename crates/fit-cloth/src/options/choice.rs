@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use cloth_fit::stage::{Constraints, Variant};
-use cloth_sim::material::{Component, Compression, Model};
+use cloth_sim::material::{BendingModel, Component, Compression, Model};
 use cloth_study::extent::Topic;
 
 /// One model.
@@ -12,7 +12,7 @@ pub struct ModelChoice(pub Model);
 
 impl ModelChoice {
     const ALL: [Self; Model::ALL.len()] = {
-        let mut all = [Self(Model::Stvk); Model::ALL.len()];
+        let mut all = [Self(Model::STVK); Model::ALL.len()];
         let mut index = 0;
         while index < all.len() {
             all[index] = Self(Model::ALL[index]);
@@ -112,6 +112,27 @@ impl From<ConstraintChoice> for Constraints {
         match choice {
             ConstraintChoice::Stable => Self::Stable,
             ConstraintChoice::ControlPoints => Self::ControlPoints,
+        }
+    }
+}
+
+/// Bending of a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BendingChoice {
+    /// Moment against curvature, on any mesh
+    Sheet,
+    /// Discrete-shell hinges, whose stiffness depends on the mesh
+    Hinges,
+    /// Ring-2 springs, on a grid
+    Springs,
+}
+
+impl From<BendingChoice> for BendingModel {
+    fn from(choice: BendingChoice) -> Self {
+        match choice {
+            BendingChoice::Sheet => Self::Sheet,
+            BendingChoice::Hinges => Self::Hinges,
+            BendingChoice::Springs => Self::Springs,
         }
     }
 }

@@ -60,7 +60,7 @@ pub struct FitFlags {
     #[command(flatten)]
     pub how: CurveFlags,
     /// Cloth model
-    #[arg(long, value_enum, default_value_t = ModelsChoice::One(ModelChoice(Model::Stvk)))]
+    #[arg(long, value_enum, default_value_t = ModelsChoice::One(ModelChoice(Model::STVK)))]
     pub model: ModelsChoice,
     /// Model variant: nonlinear or constant stiffness; weft and warp separate or shared
     #[arg(long, value_enum, default_value_t = VariantChoice::Orthotropic)]

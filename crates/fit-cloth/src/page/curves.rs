@@ -49,7 +49,7 @@ pub(super) struct Course {
 
 /// The curves of all components, observed or not.
 pub(super) fn curves(report: &FitReport) -> Vec<Curve> {
-    Component::ALL.into_iter().map(|component| curve(report, component)).collect()
+    report.model.components().into_iter().map(|component| curve(report, component)).collect()
 }
 
 fn curve(report: &FitReport, component: Component) -> Curve {

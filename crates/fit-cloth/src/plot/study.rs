@@ -26,7 +26,7 @@ pub(super) fn figures(study: &Study) -> Vec<(String, Drawn<String>)> {
         figures.push((name, error_time::of_scene(study, &scene)));
     }
     for model in Model::ALL {
-        let name = if model == Model::Stvk { "convergence".into() } else { format!("convergence-{model}") };
+        let name = if model == Model::STVK { "convergence".into() } else { format!("convergence-{model}") };
         figures.push((name, convergence::draw(study, model)));
     }
     figures

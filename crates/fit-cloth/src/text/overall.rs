@@ -25,8 +25,12 @@ pub struct Overall {
 /// Summarises a fit by its weakest parts.
 pub fn overall(report: &FitReport) -> Overall {
     let observed: Vec<&StageReport> = report.last_stages().filter(|stage| stage.curve.observed).collect();
-    let missing: Vec<Component> =
-        Component::ALL.into_iter().filter(|&component| !report.knowledge.knows(component)).collect();
+    let missing: Vec<Component> = report
+        .model
+        .components()
+        .into_iter()
+        .filter(|&component| !report.knowledge.knows(component))
+        .collect();
     Overall {
         verdict: verdict::of_fit(report),
         state: state(report, &observed, &missing),
@@ -38,9 +42,9 @@ pub fn overall(report: &FitReport) -> Overall {
 
 fn state(report: &FitReport, observed: &[&StageReport], missing: &[Component]) -> String {
     let fitted: usize = observed.iter().map(|stage| stage.components.len()).sum();
-    let given = Component::ALL.len() - missing.len() - fitted;
+    let given = report.model.components().len() - missing.len() - fitted;
     let converged = if report.converged() { "Converged" } else { "NOT converged" };
-    let mut said = format!("{converged}: {fitted} of {} curves fitted", Component::ALL.len());
+    let mut said = format!("{converged}: {fitted} of {} curves fitted", report.model.components().len());
     if given > 0 {
         said += &format!(", {given} given");
     }

@@ -8,6 +8,7 @@ use cloth_scene::drape::Drape;
 use cloth_scene::droop::Droop;
 use cloth_scene::scene::Scene;
 use cloth_scene::simulation::{End, Simulation};
+use cloth_sim::cloth::Rest;
 use cloth_sim::descent::Descent;
 use cloth_sim::mesh::Mesh;
 use std::fmt::Write;
@@ -15,12 +16,16 @@ use std::fmt::Write;
 /// Scene and material, energies, forces and measures, and a verdict.
 pub fn simulation(scene: &Scene, material: &Material, simulation: &Simulation) -> String {
     let mut text = format!(
-        "{} of {} ({}, {} vertices)\ncomponents: {}\n\n",
+        "{} of {} ({}, {} vertices)\ncomponents: {}\nrest shape: {}\n\n",
         scene.name,
         material.name,
         material.model,
         scene.mesh.len(),
-        list(&simulation.components)
+        list(&simulation.components),
+        match scene.rest {
+            Rest::Flat => "flat",
+            Rest::AsLaidOut => "as laid out",
+        }
     );
     if let Some(row) = simulation.rows.last() {
         let energies = row.energies;

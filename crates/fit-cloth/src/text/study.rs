@@ -78,7 +78,7 @@ fn published(study: &Study) -> Option<String> {
     let of = |solver| {
         // The first run is the one with all points and frames.
         let mut runs = study.part(Part::Fit);
-        runs.find(|run| run.solver == solver && run.model == Model::Stvk && run.nodes == nodes)
+        runs.find(|run| run.solver == solver && run.model == Model::STVK && run.nodes == nodes)
     };
     let (default, published) = (of(Solver::Default)?, of(Solver::AsPublished)?);
     let [fast, slow] = [default, published].map(|run| run.spent);
@@ -93,7 +93,7 @@ fn published(study: &Study) -> Option<String> {
 
 fn orders(study: &Study) -> Option<String> {
     let of_stvk =
-        || study.part(Part::Equilibrium).filter(|run| run.model == Model::Stvk && run.order.is_some());
+        || study.part(Part::Equilibrium).filter(|run| run.model == Model::STVK && run.order.is_some());
     let finest = of_stvk().map(|run| run.nodes).max()?;
     let orders = of_stvk()
         .filter(|run| run.nodes == finest && run.solver == Solver::Default)

@@ -30,7 +30,7 @@ pub fn summary_rows(report: &FitReport) -> Vec<[String; 6]> {
             [component.to_string(), why.into(), String::new(), String::new(), String::new(), String::new()]
         }
     };
-    Component::ALL.into_iter().map(row).collect()
+    report.model.components().into_iter().map(row).collect()
 }
 
 fn row(component: Component, stage: &StageReport) -> [String; 6] {

@@ -89,7 +89,7 @@ fn rounding(cloth: &Cloth, sample: &Sample, x: &[f64], forces: &[Vector3<f64>], 
 /// The force on every node, N, and its scale.
 pub(crate) fn forces(cloth: &Cloth, curves: &Curves, x: &[f64]) -> (Vec<Vector3<f64>>, ForceScale) {
     let mut gradient = vec![0.0; x.len()];
-    let mut scale = ForceScale::new(cloth.nodes());
+    let mut scale = ForceScale::new(cloth.points());
     let _ = cloth.gradient(curves, x, &mut gradient, &mut scale);
     (gradient.chunks_exact(3).map(|force| -Vector3::from_column_slice(force)).collect(), scale)
 }

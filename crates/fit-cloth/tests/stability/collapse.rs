@@ -136,7 +136,7 @@ pub(crate) fn case_09(extent: Extent) -> Vec<Row> {
             },
         ));
     }
-    for model in [Model::Stvk, Model::SoftConstraint] {
+    for model in [Model::STVK, Model::SOFT_CONSTRAINT] {
         let row = Row::new(9, format!("{model}: a collapsed state is a status"));
         rows.push(for_all(
             row,

@@ -193,7 +193,7 @@ fn errors<const K: usize, const N: usize, const S: usize>(
         stress[c] = 1.0;
         let mut blocks = [[Block::<N>::zeros(); K]; K];
         element.add_geometric(&x, &stress, &mut blocks);
-        complete(&mut blocks);
+        complete(&mut blocks, K);
         let of = |i: usize, j: usize| {
             let (a, b) = (i / N, j / N);
             if b <= a { blocks[a][b][(i % N, j % N)] } else { blocks[b][a][(j % N, i % N)] }

@@ -49,7 +49,7 @@ fn compressed(
     let patch = |share| samples::patch(model, Matrix3x2::new(share, 0.0, 0.0, 1.0, 0.0, 0.0)).unwrap();
     let stiffnesses = [stiffness, 1e3 * stiffness, 100.0 * stiffness];
     // Diagonal springs would buckle.
-    let count = if model == Model::Springs { 2 } else { 3 };
+    let count = if model == Model::SPRINGS { 2 } else { 3 };
     let curves: Vec<_> = MEMBRANE.into_iter().zip(stiffnesses).take(count).collect();
     let mut sample = patch(if driven { 1.0 } else { share });
     sample.curves = samples::linear_curves(model, &curves).unwrap();
@@ -87,7 +87,7 @@ pub(crate) fn case_10(extent: Extent) -> Vec<Row> {
                     let long = 10f64.powf(size);
                     let [width, height] = if tall { [ratio * long, long] } else { [long, ratio * long] };
                     // A spring lattice is unstable in compression: it has states of lower energy than the affine one.
-                    let least = if model == Model::Springs { 1.0 } else { 0.0 };
+                    let least = if model == Model::SPRINGS { 1.0 } else { 0.0 };
                     let [weft, warp] = [weft, warp].map(|stretch| f64::max(stretch, least));
                     slender(row, model, [width, height], [weft, shear, warp])
                 },

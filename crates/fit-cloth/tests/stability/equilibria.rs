@@ -18,7 +18,7 @@ use proptest::prelude::*;
 fn sheet(model: Model, nodes: usize, size: f64, stretch: f64, ratio: f64) -> Sample {
     let diagonals = Diagonals::Alternating;
     let mesh = Grid { columns: nodes, rows: nodes, width: size, height: size, diagonals }.mesh().unwrap();
-    let bend = stretch / ratio * if model == Model::Springs { 1.0 } else { size * size };
+    let bend = stretch / ratio * if model == Model::SPRINGS { 1.0 } else { size * size };
     Sample::at_rest(mesh, model, samples::fabric(model, [stretch, 0.1 * stretch, bend]).unwrap())
 }
 
@@ -50,7 +50,7 @@ pub(crate) fn case_20(extent: Extent) -> Vec<Row> {
 
 /// A flat sheet in compression is balanced but unstable; it buckles symmetrically to either side.
 pub(crate) fn case_21(extent: Extent) -> Vec<Row> {
-    let models = [Model::Stvk, Model::SoftConstraint];
+    let models = [Model::STVK, Model::SOFT_CONSTRAINT];
     let states = models.into_iter().flat_map(|model| [0.01, 0.03, 0.1].map(|short| (model, short)));
     let mut rows = Vec::new();
     for (model, short) in states {
@@ -147,7 +147,7 @@ pub(crate) fn case_23(extent: Extent) -> Vec<Row> {
 
 /// A flat sheet of springs, clamped along its first two columns.
 fn clamped(stretch: f64, ratio: f64) -> Sample {
-    let mut sample = sheet(Model::Springs, 9, SIDE, stretch, ratio);
+    let mut sample = sheet(Model::SPRINGS, 9, SIDE, stretch, ratio);
     sample.hold(|p| (p.x < 1.5 * SIDE / 8.0).then_some(0));
     sample
 }
@@ -231,7 +231,7 @@ pub(crate) fn case_26(extent: Extent) -> Vec<Row> {
                 let found = Solver::new(&cloth).solve(&sample.curves, &mut x, &stay);
                 // Ring-2 springs have no stiffness at flat; far away, rounding strains decide in all models.
                 let balanced = found.converged() || found.status == Status::Unstable;
-                let stable = found.converged() || model == Model::Springs || far > 0.0;
+                let stable = found.converged() || model == Model::SPRINGS || far > 0.0;
                 row.holds(balanced && stable && found.iterations == 0 && x == sample.start, || {
                     format!("1e{size:.2} m, 1e{stretch:.2} N/m, ratio 1e{ratio:.2}, {turn:?}: {found:?}")
                 })

@@ -123,7 +123,7 @@ pub(crate) fn bulging(side: f64, strains: &[f64], side_of: &dyn Fn(usize) -> f64
     let law = |_: f64| 0.0;
     let strip = Uniform {
         kind: Kind::StretchWeft,
-        model: Model::SoftConstraint,
+        model: Model::SOFT_CONSTRAINT,
         side,
         law: &law,
         strains,

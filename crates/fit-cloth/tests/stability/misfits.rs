@@ -156,7 +156,7 @@ fn buckled(row: &mut Row, model: Model, (stiffness, side): (f64, f64), thin: f64
     let membrane = 500.0 * stiffness;
     let hinge = membrane * thin * side * side / HINGE_STRAIN_PER_CURVATURE.powi(2);
     let mut curves = Curves::default();
-    for component in Component::ALL {
+    for component in Model::STVK.components() {
         let constant = match component {
             bending if bending.is_bending() => hinge,
             Component::Shear => 0.2 * membrane,
@@ -247,7 +247,7 @@ fn straight(
     let found = fit(&set, &linear).map(|(_, stage)| {
         // Linear fit of the law at the strains of the frames, weighted as forces.
         let lever = |strain: f64| match (model, kind) {
-            (Model::Stvk, Kind::StretchWeft) => side * (1.0 + 2.0 * strain).sqrt(),
+            (Model::STVK, Kind::StretchWeft) => side * (1.0 + 2.0 * strain).sqrt(),
             _ => side,
         };
         let missed = |strain: &f64| lever(*strain) * (curved(*strain) - stage.curve.curve.stress(*strain));

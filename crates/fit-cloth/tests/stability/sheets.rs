@@ -133,7 +133,7 @@ fn apart(row: &mut Row, model: Model, planar: bool, sheets: &[(bool, usize)], si
                 && *free == expected
                 && message.contains(&format!("{expected} rigid motions free"))
         }
-        Some(Error::NeedsGrid { .. }) => model == Model::Springs && loose.is_empty(),
+        Some(Error::NeedsGrid { .. }) => model == Model::SPRINGS && loose.is_empty(),
         None => loose.is_empty(),
         _ => false,
     };

@@ -93,7 +93,7 @@ pub(super) fn start_state(replica: &Replica, frame: &ReplicaFrame, curves: &Curv
     let measured = measured_shape(replica, frame);
     let imbalance = |x: &[f64]| {
         let mut gradient = vec![0.0; x.len()];
-        cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.nodes()));
+        cloth.gradient(curves, x, &mut gradient, &mut cloth_sim::cloth::ForceScale::new(cloth.points()));
         cloth.free_coordinates().iter().map(|&(c, _)| gradient[c] * gradient[c]).sum::<f64>()
     };
     let x = if replica.is_buckled(frame) || imbalance(&measured) < imbalance(&own) { measured } else { own };

@@ -65,7 +65,8 @@ pub fn predict(
         sequences.iter().map(|(sequence, parts)| Replica::new(sequence, parts)).collect::<Result<_>>()?;
     let takes_part =
         |component: &Component| sequences.iter().any(|(_, parts)| parts.components.contains(component));
-    let unknown = Component::ALL.into_iter().filter(|&component| curves.get(component).is_none());
+    let unknown =
+        settings.model.components().into_iter().filter(|&component| curves.get(component).is_none());
     let unknown: Vec<Component> = unknown.filter(takes_part).collect();
     let task = Task {
         objective: Objective::Forces,
@@ -160,7 +161,12 @@ fn parts(
     Parts {
         model: settings.model,
         flat: kind.is_on_the_bias() || !stretches && !bends,
-        components: Component::ALL.into_iter().filter(|&component| takes_part(component)).collect(),
+        components: settings
+            .model
+            .components()
+            .into_iter()
+            .filter(|&component| takes_part(component))
+            .collect(),
         areal_density: set.fabric.areal_density_kg_m2,
         grid: settings.grid(),
         diagonals: settings.diagonals,

@@ -125,8 +125,18 @@ impl MaterialFile {
             variant: settings.variant,
             compression: settings.compression,
             fabric: set.fabric.clone(),
-            measures: Component::ALL.into_iter().map(|c| (c, measure(settings.model, c))).collect(),
-            curves: Component::ALL.into_iter().map(|component| (component, entry(component))).collect(),
+            measures: settings
+                .model
+                .components()
+                .into_iter()
+                .map(|c| (c, measure(settings.model, c)))
+                .collect(),
+            curves: settings
+                .model
+                .components()
+                .into_iter()
+                .map(|component| (component, entry(component)))
+                .collect(),
             residuals: sequences
                 .iter()
                 .map(|(stage, sequence)| ResidualEntry::new(sequence, &stage.dropped))
@@ -154,6 +164,12 @@ impl MaterialFile {
         let text = read_text(path)?;
         let file: Self = parse_version(path, &text, &SCHEMA)?;
         file.named_curves().map_err(|defect| defect.at(path, &text))?;
+        let own = file.model.components();
+        if let Some(component) = file.curves.keys().find(|component| !own.contains(component)) {
+            let expected =
+                format!("the components of {}: {}", file.model, own.map(|c| c.to_string()).join(", "));
+            return Err(Error::input(path, None, format!("curves.{component}"), "a curve", expected));
+        }
         if let Some(side) = file.provenance.for_mesh_m.filter(|side| !MESHES.contains(side)) {
             let expected = "the side of a mesh's cells, 1e-5 to 1 m";
             return Err(Error::input(path, None, "provenance.for_mesh_m", side.to_string(), expected));
@@ -298,7 +314,7 @@ mod tests {
             let entry = entry(text).unwrap();
             assert_eq!(entry.control_points[0].unit, unit);
             assert_eq!(serde_json::to_string(&entry.control_points[0]).unwrap(), text);
-            assert_eq!(Unit::of(Model::Stvk, component), unit);
+            assert_eq!(Unit::of(Model::STVK, component), unit);
         }
     }
 
@@ -340,8 +356,8 @@ mod tests {
         }
         let hinges = entry(r#"{"strain":0.0,"stiffness_n_m":1.0}"#).unwrap();
         let odd = cloth_sim::curve::NegativeStrain::Odd;
-        assert!(hinges.curve(Model::Stvk, Component::Shear, odd).is_err());
-        assert!(hinges.curve(Model::Springs, Component::BendWeft, odd).is_err());
+        assert!(hinges.curve(Model::STVK, Component::Shear, odd).is_err());
+        assert!(hinges.curve(Model::SPRINGS, Component::BendWeft, odd).is_err());
     }
 
     /// Two strips of denim, made up, and their stretch curves, on coarse grids.
@@ -362,7 +378,7 @@ mod tests {
         let mut file = fitted();
         assert_eq!(
             (file.schema.as_str(), file.model, file.variant),
-            (&*SCHEMA.id(), Model::Stvk, Variant::Isotropic)
+            (&*SCHEMA.id(), Model::STVK, Variant::Isotropic)
         );
         assert_eq!((file.curves.len(), file.residuals.len(), file.failures.len()), (6, 2, 0));
         let [weft, warp] = [Component::StretchWeft, Component::StretchWarp];

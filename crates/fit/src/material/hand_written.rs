@@ -5,7 +5,7 @@ use cloth_data::error::{Error, Result};
 use cloth_data::io::TomlFile;
 use cloth_data::points::Points as ControlPoints;
 use cloth_sim::curve::{NegativeStrain, StiffnessCurve};
-use cloth_sim::material::{Component, Compression, Curves, Model};
+use cloth_sim::material::{BendingModel, Component, Compression, Curves, Model};
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, de};
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct HandWritten {
     pub(super) name: String,
     pub(super) areal_density_kg_m2: f64,
-    pub(super) model: Model,
+    model: Model,
     #[serde(default)]
     pub(super) compression: Compression,
     #[serde(default, rename = "notes")]
@@ -46,9 +46,25 @@ struct Points {
 }
 
 impl HandWritten {
+    /// Membrane and bending: a material with twist bends as a sheet.
+    pub(super) fn model(&self) -> Model {
+        let twists = self.curves.contains_key(&Component::BendTwist);
+        if twists { self.model.with(BendingModel::Sheet) } else { self.model }
+    }
+
     /// The curves of the file, validated.
     pub(super) fn curves(&self, path: &Path, file: &TomlFile) -> Result<Curves> {
-        let Self { name, areal_density_kg_m2: density, model, compression, curves, .. } = self;
+        let Self { name, areal_density_kg_m2: density, compression, curves, .. } = self;
+        let model = self.model();
+        let foreign = curves.keys().find(|component| !model.components().contains(component));
+        if let Some(component) = foreign {
+            let expected = "bend-twist of a sheet, or bend-diagonal of hinges";
+            return Err(file.invalid(
+                &format!("curves.{component}"),
+                "both bend-twist and bend-diagonal",
+                expected,
+            ));
+        }
         if name.trim().is_empty() {
             return Err(file.invalid("name", "nothing", "the material's name"));
         }
@@ -63,9 +79,9 @@ impl HandWritten {
             let negative = model.negative_strain(component, *compression);
             if let Some(table) = points.table(component, file)? {
                 let table = path.parent().unwrap_or(Path::new("")).join(table);
-                return Ok((component, CurveFile::read(&table)?.curve(component, *model, negative)?));
+                return Ok((component, CurveFile::read(&table)?.curve(component, model, negative)?));
             }
-            Ok((component, points.curve(*model, component, negative, file)?))
+            Ok((component, points.curve(model, component, negative, file)?))
         });
         curves.collect()
     }

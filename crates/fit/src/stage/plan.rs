@@ -5,7 +5,7 @@ use crate::equilibria::Objective;
 use crate::twin::replica::{Parts, Replica};
 use cloth_data::error::{Error, Result};
 use cloth_data::frame::{Kind, MeasurementSet};
-use cloth_sim::material::Component;
+use cloth_sim::material::{Component, Model};
 
 /// The tests that show any of some components, each once.
 pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
@@ -17,7 +17,7 @@ pub fn kinds_of_all(components: &[Component]) -> Vec<Kind> {
 pub struct Plan {
     /// The components that share the fitted curve: one, or weft and warp of an isotropic variant.
     pub fitted: Vec<Component>,
-    /// All components that store energy.
+    /// Components that store energy, of any model.
     pub components: Vec<Component>,
     /// Quantities compared.
     pub objective: Objective,
@@ -34,6 +34,11 @@ impl Plan {
     pub fn name(&self) -> String {
         let names: Vec<String> = self.fitted.iter().map(|component| component.to_string()).collect();
         names.join(" = ")
+    }
+
+    /// The components of a model that store energy.
+    pub fn components_of(&self, model: Model) -> Vec<Component> {
+        model.components().into_iter().filter(|component| self.components.contains(component)).collect()
     }
 
     /// The replicas of all sequences of a set that show what is fitted.
@@ -56,7 +61,7 @@ impl Plan {
     ) -> Result<Vec<Replica>> {
         let parts = |kind: Kind| Parts {
             model: settings.model,
-            components: self.components.clone(),
+            components: self.components_of(settings.model),
             areal_density: set.fabric.areal_density_kg_m2,
             grid: settings.grid(),
             diagonals: settings.diagonals,

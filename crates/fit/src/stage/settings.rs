@@ -142,7 +142,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            model: Model::Stvk,
+            model: Model::STVK,
             variant: Variant::Orthotropic,
             nodes: None,
             for_mesh: None,

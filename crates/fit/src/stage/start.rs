@@ -49,7 +49,7 @@ pub(super) fn start(
     };
     let mut known = knowledge.without(&plan.fitted).curves().clone();
     let mut assumed = BTreeMap::new();
-    for &component in &plan.components {
+    for component in plan.components_of(settings.model) {
         if plan.fitted.contains(&component) || known.get(component).is_some() {
             continue;
         }

@@ -26,7 +26,7 @@ use cloth_data::error::{Error, Result};
 use cloth_data::frame::{HEIGHT_SEEN, Kind, Phase, Sequence};
 use cloth_data::kind::Holding;
 use cloth_data::rectangle::FLAT_SLOPE;
-use cloth_sim::cloth::{Cloth, Problem};
+use cloth_sim::cloth::{Cloth, Problem, Rest};
 use cloth_sim::load::Held;
 use cloth_sim::material::{Component, Model};
 use cloth_sim::mesh::{Diagonals, Grid, Mesh};
@@ -502,6 +502,7 @@ fn cloth(
         tied,
         guided: &[],
         planar,
+        rest: Rest::Flat,
     })
     .map_err(|source| Error::Mechanics { context: sequence.name.clone(), source })
 }
@@ -619,8 +620,8 @@ mod tests {
             Replica::new(&sequence, &parts).unwrap_err().to_string()
         };
         let long = "sequence square: found springs in cells of 8.33e-3 m × 2.50e-2 m";
-        assert!(message(Model::Springs, [13, 5]).starts_with(long));
-        assert!(message(Model::Springs, [13, 7]).contains("found no clip"));
-        assert!(message(Model::Stvk, [13, 5]).contains("found no clip"));
+        assert!(message(Model::SPRINGS, [13, 5]).starts_with(long));
+        assert!(message(Model::SPRINGS, [13, 7]).contains("found no clip"));
+        assert!(message(Model::STVK, [13, 5]).contains("found no clip"));
     }
 }

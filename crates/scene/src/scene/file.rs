@@ -1,5 +1,6 @@
 //! Structure of `SCENE.toml`: docs/formats.md.
 
+use cloth_sim::cloth::Rest;
 use cloth_sim::material::Component;
 use cloth_sim::mesh::Diagonals;
 use serde::Deserialize;
@@ -64,6 +65,8 @@ pub(super) struct SheetFile {
     pub(super) disc: Option<DiscFile>,
     #[serde(default)]
     pub(super) mesh: Option<MeshFile>,
+    #[serde(default)]
+    pub(super) rest: Rest,
     #[serde(default)]
     pub(super) origin_m: Option<[f64; 3]>,
     #[serde(default)]

@@ -4,6 +4,7 @@ use super::array::{check_length, vector};
 use super::file::{Axis, DiscFile, GridFile, MeshFile, SheetFile};
 use cloth_data::error::Result;
 use cloth_data::io::{TomlFile, YarnAxes, read_mesh};
+use cloth_sim::cloth::Rest;
 use cloth_sim::disc::Disc;
 use cloth_sim::mesh::{Grid, Mesh};
 use nalgebra::Vector3;
@@ -34,6 +35,9 @@ pub(super) fn mesh(sheet: &SheetFile, scene: &Path, file: &TomlFile) -> Result<M
     let refuse =
         |key: &str, error: cloth_sim::error::Error| file.invalid(key, error.to_string(), "a valid sheet");
     check_length(file, "sheet.grid.nodes", 2)?;
+    if sheet.rest == Rest::AsLaidOut && sheet.mesh.is_none() {
+        return Err(file.invalid("sheet.rest", "as-laid-out", "flat, as grids and discs are, or a mesh"));
+    }
     let flat = match (&sheet.grid, &sheet.disc, &sheet.mesh) {
         (Some(grid), None, None) => {
             of_grid(grid, file)?.mesh().map_err(|error| refuse("sheet.grid", error))?

@@ -62,11 +62,19 @@ impl Change for Alike<'_> {
         let mut kept: Vec<E> = Vec::new();
         let mut place_of: HashMap<Key, usize> = HashMap::new();
         for mut element in elements.drain(..) {
-            let own = element.nodes();
+            let nodes_of =
+                |element: &E| element.coordinates()[..E::TRANSLATED].iter().map(|own| own[0] / 3).collect();
+            let own: Vec<usize> = nodes_of(&element);
+            let rotations = element.coordinates();
+            if rotations[E::TRANSLATED..].iter().flatten().any(|own| own / 3 >= self.mesh.len()) {
+                // Edges that rotate do so each on its own.
+                kept.push(element);
+                continue;
+            }
             match place_of.entry(self.key(&own)) {
                 Entry::Occupied(place) => {
                     let kept = &mut kept[*place.get()];
-                    let stands = kept.nodes();
+                    let stands: Vec<usize> = nodes_of(kept);
                     *kept.extent() += *element.extent();
                     let pairs = own[1..].iter().zip(&stands[1..]);
                     self.twins

@@ -28,10 +28,8 @@ pub(super) struct Guide {
     projection: Matrix3<f64>,
     /// Lower entries of the node's own block; an entry above the diagonal refers to its mirror image.
     own: Block,
-    /// Blocks in the node's rows.
-    rows: Vec<Block>,
-    /// Blocks in the node's columns.
-    columns: Vec<Block>,
+    /// Entries between the node's unknowns and each neighbouring unknown.
+    others: Vec<[usize; 3]>,
 }
 
 /// The guided nodes of a problem.
@@ -49,24 +47,18 @@ pub(super) fn guides(
 ) -> Result<Vec<Guide>> {
     let guide = |guided: &Guided| {
         let unknown = unknown_of[3 * guided.node];
-        let block = |row: usize, column: usize| -> Option<Block> {
-            let mut block = Block::default();
-            for (i, entries) in block.iter_mut().enumerate() {
-                for (j, entry) in entries.iter_mut().enumerate() {
-                    let [a, b] = [row + i, column + j];
-                    *entry = pattern.position(a.max(b), a.min(b))?;
-                }
-            }
-            Some(block)
+        let beside = |other: usize| -> Option<[usize; 3]> {
+            let place = |i: usize| pattern.position((unknown + i).max(other), (unknown + i).min(other));
+            Some([place(0)?, place(1)?, place(2)?])
         };
-        let others = || neighbours[guided.node].iter().map(|&node| unknown_of[3 * node]);
-        let others = || others().filter(|&other| other != HELD);
+        let own = || Some([beside(unknown)?, beside(unknown + 1)?, beside(unknown + 2)?]);
+        let others = neighbours[guided.node].iter().flat_map(|node| 3 * node..3 * node + 3);
+        let others = others.map(|coordinate| unknown_of[coordinate]).filter(|&other| other != HELD);
         Ok(Guide {
             unknown,
             projection: guided.free.projection()?,
-            own: block(unknown, unknown).unwrap_or_default(),
-            rows: others().filter(|&other| other < unknown).filter_map(|o| block(unknown, o)).collect(),
-            columns: others().filter(|&other| other > unknown).filter_map(|o| block(o, unknown)).collect(),
+            own: own().unwrap_or_default(),
+            others: others.filter_map(beside).collect(),
         })
     };
     guided.iter().map(guide).collect()
@@ -86,13 +78,9 @@ impl Guide {
             (0..3).for_each(|i| (0..3).for_each(|j| values[block[i][j]] = filtered[(i, j)]));
         };
         let s = self.projection;
-        for block in &self.rows {
-            let filtered = s * read(values, block);
-            write(values, block, filtered);
-        }
-        for block in &self.columns {
-            let filtered = read(values, block) * s;
-            write(values, block, filtered);
+        for places in &self.others {
+            let filtered = s * Vector3::from_fn(|i, _| values[places[i]]);
+            (0..3).for_each(|i| values[places[i]] = filtered[i]);
         }
         let own = read(values, &self.own);
         let size = (own.trace().abs() / 3.0).max(f64::MIN_POSITIVE.sqrt());

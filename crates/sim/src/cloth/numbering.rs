@@ -70,6 +70,8 @@ pub(super) fn leaders(nodes: usize, tied: &[Vec<usize>]) -> Vec<usize> {
 /// Collects the pairs of nodes that share an element.
 pub(super) struct GraphPass {
     pub(super) neighbours: Vec<BTreeSet<usize>>,
+    /// Coordinates that an element has.
+    pub(super) used: BTreeSet<usize>,
 }
 
 impl GraphPass {
@@ -91,9 +93,11 @@ impl Pass for GraphPass {
         elements: &[E],
     ) {
         for element in elements {
-            let nodes = element.nodes();
-            for from in nodes {
-                self.neighbours[from].extend(nodes.iter().filter(|&&to| to != from));
+            let coordinates = element.coordinates();
+            let points: BTreeSet<usize> = coordinates.iter().flatten().map(|own| own / 3).collect();
+            self.used.extend(coordinates.as_flattened());
+            for &from in &points {
+                self.neighbours[from].extend(points.iter().filter(|&&to| to != from));
             }
         }
     }
@@ -109,18 +113,20 @@ pub(super) struct ScatterPass<'a> {
 }
 
 impl ScatterPass<'_> {
-    fn target(&self, [first, second]: [(usize, usize); 2]) -> usize {
-        let unknown = |(node, i): (usize, usize)| self.unknown_of[3 * node + i];
-        let border = |(node, i): (usize, usize), column: usize| {
-            self.clip_of[node]
-                .map(|clip| self.pattern.entries() + (3 * clip + i) * self.pattern.size() + column)
+    /// * `mirrored` — the element lists the entry once, and it is no diagonal one of its own
+    fn target(&self, [first, second]: [usize; 2], mirrored: bool) -> usize {
+        let unknown = |coordinate: usize| self.unknown_of[coordinate];
+        let border = |coordinate: usize, column: usize| {
+            self.clip_of[coordinate / 3].map(|clip| {
+                self.pattern.entries() + (3 * clip + coordinate % 3) * self.pattern.size() + column
+            })
         };
         let nowhere = self.pattern.entries() + 3 * self.clips * self.pattern.size();
         let place = match (unknown(first), unknown(second)) {
             (HELD, HELD) => None,
             (HELD, column) => border(first, column),
             (column, HELD) => border(second, column),
-            (a, b) if a == b && first != second => {
+            (a, b) if a == b && mirrored => {
                 self.pattern.position(a, a).map(|diagonal| nowhere + 1 + diagonal)
             }
             (a, b) => self.pattern.position(a.max(b), a.min(b)),
@@ -139,10 +145,11 @@ impl Pass for ScatterPass<'_> {
         let entries = lower_entries(K, N);
         let mut targets = Vec::with_capacity(entries.len() * elements.len());
         for element in elements {
-            let nodes = element.nodes();
-            targets.extend(
-                entries.iter().map(|entry| self.target(entry.map(|(node, i)| (nodes[node], i))) as u32),
-            );
+            let coordinates = element.coordinates();
+            let of_entry = |entry: &[(usize, usize); 2]| {
+                self.target(entry.map(|(a, i)| coordinates[a][i]), entry[0] != entry[1])
+            };
+            targets.extend(entries.iter().map(|entry| of_entry(entry) as u32));
         }
         self.targets[part] = targets;
     }

@@ -5,6 +5,7 @@ use crate::load::{Guided, Held};
 use crate::material::{Component, Model};
 use crate::mesh::Mesh;
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A cloth problem.
@@ -30,6 +31,19 @@ pub struct Problem<'a> {
     pub guided: &'a [Guided],
     /// Planar motion, z = const: two unknowns per node.
     pub planar: bool,
+    /// Shape without bending moments.
+    pub rest: Rest,
+}
+
+/// Shape in which a sheet has no bending moments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rest {
+    /// Flat, as woven.
+    #[default]
+    Flat,
+    /// The shape of the mesh, as for pleats that were set.
+    AsLaidOut,
 }
 
 impl<'a> Problem<'a> {
@@ -47,6 +61,7 @@ impl<'a> Problem<'a> {
             tied: &[],
             guided: &[],
             planar: false,
+            rest: Rest::Flat,
         }
     }
 }

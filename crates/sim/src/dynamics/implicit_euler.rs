@@ -53,10 +53,10 @@ impl<'a> ImplicitEuler<'a> {
             increment: Increment::new(cloth),
             newton,
             masses: cloth.unknown_masses(),
-            predicted: vec![0.0; 3 * cloth.nodes()],
+            predicted: vec![0.0; 3 * cloth.points()],
             drag: Vec::new(),
             values: Vec::new(),
-            coordinates: vec![0.0; 3 * cloth.nodes()],
+            coordinates: vec![0.0; 3 * cloth.points()],
             unknowns: vec![0.0; cloth.unknowns()],
         }
     }

@@ -42,12 +42,12 @@ pub(super) struct RungeKutta {
 
 impl RungeKutta {
     pub(super) fn new(cloth: &Cloth) -> Self {
-        let zeros = vec![0.0; 3 * cloth.nodes()];
+        let zeros = vec![0.0; 3 * cloth.points()];
         let state = State { positions: zeros.clone(), velocities: zeros.clone() };
         Self {
             masses: cloth.unknown_masses(),
             gradient: zeros,
-            scale: ForceScale::new(cloth.nodes()),
+            scale: ForceScale::new(cloth.points()),
             values: Vec::new(),
             drag: Vec::new(),
             unknowns: vec![0.0; cloth.unknowns()],

@@ -2,7 +2,7 @@
 
 use super::state::State;
 use crate::cloth::Cloth;
-use crate::element::gather;
+use crate::element::{gather, stacked};
 use crate::error::{Error, Result};
 use nalgebra::{Matrix3, Vector3};
 
@@ -55,10 +55,10 @@ impl Wind {
     /// Computes B at every node, kg/s.
     pub(super) fn drag(&self, cloth: &Cloth, state: &State, air: Vector3<f64>, drag: &mut Vec<Matrix3<f64>>) {
         drag.clear();
-        drag.resize(cloth.nodes(), Matrix3::zeros());
+        drag.resize(cloth.points(), Matrix3::zeros());
         for &nodes in cloth.triangles() {
-            let [a, b, c] = gather::<3, 3>(nodes, &state.positions);
-            let [p, q, r] = gather::<3, 3>(nodes, &state.velocities);
+            let [a, b, c] = gather::<3, 3>(stacked(nodes), &state.positions);
+            let [p, q, r] = gather::<3, 3>(stacked(nodes), &state.velocities);
             let across = (b - a).cross(&(c - a));
             let Some(normal) = across.try_normalize(f64::MIN_POSITIVE) else { continue };
             let relative = air - (p + q + r) / 3.0;

@@ -101,7 +101,7 @@ impl Solver<'_> {
         if !(curvature < -SINGULAR * self.mean_diagonal()) {
             return None;
         }
-        let mut direction = vec![0.0; 3 * self.cloth.nodes()];
+        let mut direction = vec![0.0; 3 * self.cloth.points()];
         self.cloth.spread(&self.reduced, &mut direction);
         let length = |node: &[f64]| node.iter().map(|d| d * d).sum::<f64>().sqrt();
         let largest = direction.chunks_exact(3).map(length).fold(0.0, f64::max);

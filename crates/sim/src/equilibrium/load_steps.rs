@@ -43,7 +43,7 @@ impl Solver<'_> {
         target: &[f64],
         settings: &Settings,
     ) -> Equilibrium {
-        assert_eq!([x.len(), target.len()], [3 * self.cloth.nodes(); 2], "three coordinates per node");
+        assert_eq!([x.len(), target.len()], [3 * self.cloth.points(); 2], "three coordinates per node");
         if let Some(refused) = self.refused(x) {
             return refused;
         }
@@ -132,10 +132,10 @@ struct Follower {
 
 /// Motions of all clips, and one for the nodes held without a clip.
 fn motions(cloth: &Cloth, x: &[f64], target: &[f64]) -> Vec<Motion> {
-    let mut free = vec![false; cloth.nodes()];
+    let mut free = vec![false; cloth.points()];
     cloth.free_coordinates().iter().for_each(|(coordinate, _)| free[coordinate / 3] = true);
     let mut clips: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
-    for node in (0..cloth.nodes()).filter(|&node| !free[node]) {
+    for node in (0..cloth.points()).filter(|&node| !free[node]) {
         clips.entry(cloth.clip_of(node)).or_default().push(node);
     }
     clips.values().map(|nodes| Motion::new(nodes, x, target)).collect()

@@ -55,18 +55,18 @@ impl<'a> Solver<'a> {
 
     /// Allocates with a given linear solver.
     pub(crate) fn with(cloth: &'a Cloth, linear: Linear) -> Self {
-        let coordinates = 3 * cloth.nodes();
+        let coordinates = 3 * cloth.points();
         Self {
             cloth,
             linear,
             increment: None,
             values: Vec::new(),
             gradient: vec![0.0; coordinates],
-            scale: ForceScale::new(cloth.nodes()),
+            scale: ForceScale::new(cloth.points()),
             step: vec![0.0; coordinates],
             trial: vec![0.0; coordinates],
             trial_gradient: vec![0.0; coordinates],
-            trial_scale: ForceScale::new(cloth.nodes()),
+            trial_scale: ForceScale::new(cloth.points()),
             reduced: vec![0.0; cloth.unknowns()],
             forces: vec![0.0; cloth.unknowns()],
             mixed: Vec::new(),
@@ -139,17 +139,21 @@ impl<'a> Solver<'a> {
         for &(coordinate, unknown) in cloth.free_coordinates() {
             let node = coordinate / 3;
             self.forces[unknown] += self.scale.stiffness[node] * size + self.scale.magnitude[node];
-            if node != last {
+            // Rotations are no nodes.
+            if node != last && node < cloth.nodes() {
                 typical += self.scale.magnitude[node].max(cloth.weight(node));
                 last = node;
             }
         }
         let mut rounding = 100.0 * f64::EPSILON * self.forces.iter().fold(0.0, |a: f64, &b| a.max(b));
         cloth.collect(&self.gradient, &mut self.forces);
-        let moving = self.forces.chunks_exact(if cloth.is_planar() { 2 } else { 3 });
-        let nodes = moving.len() as f64;
-        let squares = moving.map(|force| force.iter().map(|f| f * f).sum::<f64>());
-        let (largest, total) = squares.fold((0.0f64, 0.0), |(largest, total), s| (largest.max(s), total + s));
+        let (mut largest, mut total, mut nodes, mut first) = (0.0f64, 0.0, 0.0, 0);
+        for point in cloth.unknown_coordinates().chunk_by(|a, b| a / 3 == b / 3) {
+            let force = &self.forces[first..first + point.len()];
+            let square = force.iter().map(|f| f * f).sum::<f64>();
+            (largest, total, first) = (largest.max(square), total + square, first + point.len());
+            nodes += f64::from(u8::from(point[0] / 3 < cloth.nodes()));
+        }
         let (imbalance, asked) = match settings.tolerance {
             Tolerance::Relative(share) => (largest.sqrt(), share * typical / nodes.max(1.0)),
             Tolerance::Absolute(limit) => {

@@ -1,7 +1,7 @@
 //! Soft-constraint triangles: engineering strain instead of Green strain.
 
 use super::triangle::{TRIANGLE_COMPONENTS, Triangle, add_scalar_blocks};
-use crate::element::{Block, Element, Point};
+use crate::element::{Block, Element, Point, stacked};
 use crate::material::Component;
 
 /// A triangle whose stretch strains are engineering strains.
@@ -48,8 +48,8 @@ impl SoftTriangle {
 }
 
 impl<const N: usize> Element<3, N, 3> for SoftTriangle {
-    fn nodes(&self) -> [usize; 3] {
-        self.0.nodes
+    fn coordinates(&self) -> [[usize; 3]; 3] {
+        stacked(self.0.nodes)
     }
 
     fn components(&self) -> [Component; 3] {

@@ -1,6 +1,6 @@
 //! Springs: ring 1 in the plane, ring 2 for bending.
 
-use crate::element::{Block, Element, Point};
+use crate::element::{Block, Element, Point, stacked};
 use crate::error::{Error, Result};
 use crate::material::Component;
 use crate::mesh::{Diagonals, Grid, Mesh};
@@ -38,8 +38,8 @@ impl Spring {
 }
 
 impl<const N: usize> Element<2, N, 1> for Spring {
-    fn nodes(&self) -> [usize; 2] {
-        self.nodes
+    fn coordinates(&self) -> [[usize; 3]; 2] {
+        stacked(self.nodes)
     }
 
     fn components(&self) -> [Component; 1] {

@@ -1,7 +1,7 @@
 //! Diagonalised St. Venant–Kirchhoff triangles.
 
 use super::triangle::{TRIANGLE_COMPONENTS, Triangle, add_scalar_blocks};
-use crate::element::{Block, Element, Point};
+use crate::element::{Block, Element, Point, stacked};
 use crate::material::Component;
 
 /// A triangle with uncoupled Green strains.
@@ -18,8 +18,8 @@ use crate::material::Component;
 pub struct StvkTriangle(pub Triangle);
 
 impl<const N: usize> Element<3, N, 3> for StvkTriangle {
-    fn nodes(&self) -> [usize; 3] {
-        self.0.nodes
+    fn coordinates(&self) -> [[usize; 3]; 3] {
+        stacked(self.0.nodes)
     }
 
     fn components(&self) -> [Component; 3] {

@@ -72,14 +72,14 @@ pub fn run(options: &TableOptions, printing: Printing, output: &mut impl Write) 
     let tension = options.tension_n_per_m;
     let (conversion, component, model, words) = match options.measure {
         MeasureChoice::Green => {
-            (Conversion::Green, Component::StretchWeft, Model::Stvk, "Green strain, for the model stvk")
+            (Conversion::Green, Component::StretchWeft, Model::STVK, "Green strain, for the model stvk")
         }
         MeasureChoice::Engineering => {
             let words = "engineering strain, for the models soft-constraint and springs";
-            (Conversion::Engineering, Component::StretchWeft, Model::SoftConstraint, words)
+            (Conversion::Engineering, Component::StretchWeft, Model::SOFT_CONSTRAINT, words)
         }
         MeasureChoice::Shear => {
-            (Conversion::Shear { tension }, Component::Shear, Model::Stvk, "shear, for all models")
+            (Conversion::Shear { tension }, Component::Shear, Model::STVK, "shear, for all models")
         }
     };
     let test = ForceTable {

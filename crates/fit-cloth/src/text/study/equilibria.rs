@@ -72,7 +72,7 @@ pub(super) fn meshes(study: &Study) -> Section {
 }
 
 pub(super) fn tolerances(study: &Study) -> Section {
-    let of_stvk = || study.part(Part::Equilibrium).filter(|run| run.model == Model::Stvk);
+    let of_stvk = || study.part(Part::Equilibrium).filter(|run| run.model == Model::STVK);
     let tried =
         of_stvk().find(|run| run.tolerance != run.solver.equilibrium().tolerance).map(|run| run.nodes);
     let nodes = tried.unwrap_or(0);

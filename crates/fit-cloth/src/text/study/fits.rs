@@ -66,7 +66,7 @@ pub(super) fn stages(study: &Study) -> Section {
     let of = |solver| {
         study
             .part(Part::Stage)
-            .filter(move |run| run.solver == solver && run.model == Model::Stvk && run.nodes == most)
+            .filter(move |run| run.solver == solver && run.model == Model::STVK && run.nodes == most)
     };
     let mut names: Vec<&str> =
         of(Solver::Default).chain(of(Solver::AsPublished)).map(|run| &run.test[..]).collect();

@@ -62,7 +62,7 @@ impl Row {
             variant: settings.variant,
             failure: Some(error.to_string()),
             parameters: 0,
-            missing: Component::ALL.to_vec(),
+            missing: settings.model.components().to_vec(),
             fit: Distance::default(),
             validation: None,
             left_out: Vec::new(),
